@@ -1,0 +1,49 @@
+"""Targets by name: their dialects, harnesses and runtimes. Only this file of the generator knows the package."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from codegen.emit.dialect import Dialect
+from codegen.errors import UserError, unknown
+
+TARGETS = ("glsl", "wgsl", "opencl")
+
+
+def dialect(target: str, name: str | None = None) -> Dialect:
+    """A dialect by target and name (the target's default if none); raises UserError for unknown names."""
+    if target not in TARGETS:
+        raise unknown("target", target, TARGETS)
+    module: Any = importlib.import_module(f"targets.{target}.dialect")
+    dialects: dict[str, Dialect] = module.DIALECTS
+    chosen = name or module.DEFAULT
+    if chosen not in dialects:
+        raise unknown(f"{target} dialect", chosen, dialects)
+    return dialects[chosen]
+
+
+def dialects_of(target: str) -> dict[str, Dialect]:
+    """All dialects of a target by name."""
+    dialect(target)
+    found: dict[str, Dialect] = importlib.import_module(f"targets.{target}.dialect").DIALECTS
+    return found
+
+
+def complete_program(target: str, library: str, body: str, version: str | None = None) -> str:
+    """A library text and the statements of an entry point as one program for the target's runtime."""
+    harness: Any = importlib.import_module("targets.harness")
+    options = {} if version is None else {"version": version}
+    text: str = harness.complete_program(target, library, body, **options)
+    return text
+
+
+def open_runtime(target: str) -> Any:
+    """The runtime of a target (targets.protocol.Runtime); raises UserError where it is not available."""
+    if target not in TARGETS:
+        raise unknown("target", target, TARGETS)
+    targets: Any = importlib.import_module("targets")
+    try:
+        return targets.open_runtime(target)
+    except targets.TargetUnavailable as e:
+        raise UserError(f"target {target} is not available: {e}") from None

@@ -1,0 +1,1 @@
+"""Emission: IR to text. Dialects are data; printers keep the tree and decide nothing."""

@@ -1,0 +1,64 @@
+"""The comment above an emitted function: what it is, its domain, its declared error, its form and source."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+
+from codegen.bounds import Bound
+from codegen.emit import wrap
+from codegen.ir import nodes as ir
+from codegen.ir.types import Field
+
+_TAIL = ("returns", "degenerate", "error", "form", "source")
+
+
+def renamer(names: Iterable[str], prefix: str) -> Callable[[str], str]:
+    """A function that puts the prefix before library names in running text (names of several words only)."""
+    compound = sorted(
+        (n for n in names if "_" in n or (n[:1].isupper() and n != n.upper())), key=len, reverse=True
+    )
+    if not compound:
+        return lambda text: text
+    pattern = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, compound))})(?!\w)")
+    return lambda text: pattern.sub(rf"{prefix}\1", text)
+
+
+def function_comment(
+    f: ir.Function, bounds: Iterable[Bound], target: str, rename: Callable[[str], str]
+) -> list[str]:
+    """The comment lines of one function."""
+    entries = dict(f.doc.entries)
+    for p in f.parameters:
+        described = p.domain.describe() if p.domain is not None else ""
+        entries[p.name] = _join(entries.get(p.name, ""), described)
+    errors = [b.describe() for b in bounds if not b.targets or target in b.targets]
+    if errors:
+        entries["error"] = "; ".join(errors)
+    order = [p.name for p in f.parameters] + [key for key in _TAIL if key in entries]
+    note = {"variant": f"Variant of {f.base}.", "printed": f"As the lecture prints it; right: {f.base}."}
+    summary = " ".join(filter(None, (f.doc.summary, note.get(f.kind, ""))))
+    return _comment(rename(summary), {key: rename(entries[key]) for key in order})
+
+
+def struct_comment(s: ir.StructDef, rename: Callable[[str], str]) -> list[str]:
+    """The comment lines of one struct."""
+
+    def entry(f: Field) -> str:
+        return _join(s.doc.entries.get(f.name, ""), f.domain.describe() if f.domain is not None else "")
+
+    return _comment(rename(s.doc.summary), {f.name: rename(entry(f)) for f in s.type.fields})
+
+
+def _join(text: str, described: str) -> str:
+    if not text or not described or described in text:
+        return text or described
+    return f"{text}; {described}"
+
+
+def _comment(summary: str, entries: dict[str, str]) -> list[str]:
+    width = max((len(key) for key in entries), default=0)
+    lines = wrap.comment(summary, "// ", "// ")
+    for key, text in entries.items():
+        lines += wrap.comment(text, f"//   {key.ljust(width)}  ", f"//   {' ' * width}  ")
+    return lines

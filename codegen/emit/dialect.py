@@ -1,0 +1,45 @@
+"""What distinguishes one target language from another, as data. Instances live in targets/<target>/dialect.py."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """One dialect of a target.
+
+    target       the family: glsl, wgsl or opencl
+    name         as --dialect takes it
+    title        as a person says it
+    extension    of an emitted file
+    types        IR type name -> spelling
+    precision    precision qualifier put before float and integer types ("" for none)
+    qualifier    what stands before a function definition ("" for none)
+    declaration  order of name and type: "type name" or "name: type"
+    float_suffix of float literals
+    vectors      "call": vec3(a, b), "cast": (float3)(a, b)
+    structs      constructors: "call": S(a, b), "compound": (S){a, b}
+    conversions  "call": float(x), "cast": (float)x
+    conditional  "ternary": c ? a : b, "select": select(b, a, c)
+    guard        whether the text carries an include guard
+    line_map     how a source line is stated, with {line} and {file} ("" where the target has no directive)
+    """
+
+    target: str
+    name: str
+    title: str
+    extension: str
+    types: Mapping[str, str]
+    precision: str = ""
+    qualifier: str = ""
+    declaration: Literal["type name", "name: type"] = "type name"
+    float_suffix: str = ""
+    vectors: Literal["call", "cast"] = "call"
+    structs: Literal["call", "compound"] = "call"
+    conversions: Literal["call", "cast"] = "call"
+    conditional: Literal["ternary", "select"] = "ternary"
+    guard: bool = True
+    line_map: str = field(default="")

@@ -1,0 +1,97 @@
+"""Expressions as text. Invariant: the text parses back to the same tree."""
+
+from __future__ import annotations
+
+from codegen.emit.dialect import Dialect
+from codegen.emit.literal import literal
+from codegen.emit.precedence import CONDITION, LEFT, RIGHT, level
+from codegen.ir import nodes as ir
+from codegen.ir.types import Struct, Vector
+from codegen.ops import BUILTINS
+
+_SPELLING = {"//": "/", "and": "&&", "or": "||", "not": "!", "negate": "-"}
+_PRIMARY = frozenset({"primary"})
+_CONDITIONAL_PARTS = CONDITION | {"primary"}
+
+
+class ExprPrinter:
+    """Prints expressions of one dialect; one method per kind of node."""
+
+    def __init__(self, dialect: Dialect) -> None:
+        self.dialect = dialect
+
+    def show(self, e: ir.Expr) -> str:
+        """The text of an expression."""
+        match e:
+            case ir.Const():
+                return literal(e, self.dialect)
+            case ir.Var():
+                return e.name
+            case ir.Unary():
+                return f"{_SPELLING.get(e.op, e.op)}{self.bare(e.operand, _PRIMARY)}"
+            case ir.Binary():
+                return self.binary(e)
+            case ir.Builtin():
+                return f"{BUILTINS[e.op].spelling(self.dialect.target)}({self.arguments(e.args)})"
+            case ir.Call():
+                return f"{e.function}({self.arguments(e.args)})"
+            case ir.Construct():
+                return self.construct(e)
+            case ir.Convert():
+                return self.convert(e)
+            case ir.Member():
+                return f"{self.bare(e.value, _PRIMARY)}.{e.name}"
+            case ir.Swizzle():
+                return f"{self.bare(e.value, _PRIMARY)}.{e.components}"
+            case ir.Select():
+                return self.conditional(e)
+
+    def bare(self, e: ir.Expr, allowed: frozenset[str]) -> str:
+        """An operand, in parentheses unless its level is allowed to stand bare."""
+        text = self.show(e)
+        return text if self.level(e) in allowed else f"({text})"
+
+    def level(self, e: ir.Expr) -> str:
+        """The level in this dialect: casts are unary in C, select() is a call in WGSL."""
+        if isinstance(e, ir.Select) and self.dialect.conditional == "select":
+            return "primary"
+        if isinstance(e, ir.Convert) and self.dialect.conversions == "cast":
+            return "unary"
+        if isinstance(e, ir.Construct):
+            cast = self.dialect.vectors if isinstance(e.type, Vector) else self.dialect.structs
+            return "primary" if cast == "call" else "unary"
+        return level(e)
+
+    def arguments(self, args: tuple[ir.Expr, ...]) -> str:
+        return ", ".join(self.show(a) for a in args)
+
+    def binary(self, e: ir.Binary) -> str:
+        at = level(e)
+        left, right = self.bare(e.left, LEFT[at]), self.bare(e.right, RIGHT[at] | self._right_casts(e.right))
+        return f"{left} {_SPELLING.get(e.op, e.op)} {right}"
+
+    def _right_casts(self, e: ir.Expr) -> frozenset[str]:
+        """A cast may stand bare on the right (a * (float)b); a sign may not (a - -b)."""
+        is_sign = isinstance(e, ir.Unary | ir.Const)
+        return frozenset() if is_sign else frozenset({"unary"})
+
+    def construct(self, e: ir.Construct) -> str:
+        name = self.dialect.types.get(e.type.name, e.type.name)
+        if isinstance(e.type, Struct) and self.dialect.structs == "compound":
+            return f"({name}){{{self.arguments(e.args)}}}"
+        if isinstance(e.type, Vector) and self.dialect.vectors == "cast":
+            return f"({name})({self.arguments(e.args)})"
+        return f"{name}({self.arguments(e.args)})"
+
+    def convert(self, e: ir.Convert) -> str:
+        name = self.dialect.types[e.type.name]
+        if self.dialect.conversions == "cast":
+            return f"({name}){self.bare(e.operand, _PRIMARY)}"
+        return f"{name}({self.show(e.operand)})"
+
+    def conditional(self, e: ir.Select) -> str:
+        if self.dialect.conditional == "select":
+            return f"select({self.arguments((e.if_false, e.if_true, e.condition))})"
+        condition = self.bare(e.condition, _CONDITIONAL_PARTS)
+        parts = [self.bare(part, _CONDITIONAL_PARTS) for part in (e.if_true, e.if_false)]
+        return f"{condition} ? {parts[0]} : {parts[1]}"

@@ -1,0 +1,33 @@
+"""Literals: the shortest decimal that reads back as the same float32, always visibly a float."""
+
+from __future__ import annotations
+
+import struct
+
+from codegen.emit.dialect import Dialect
+from codegen.ir.nodes import Const
+from codegen.ir.types import BOOL, F32, U32
+
+
+def shortest(value: float) -> str:
+    """The shortest decimal text that rounds to this float32."""
+    packed = struct.pack("<f", value)
+    for digits in range(1, 10):
+        text = f"{value:.{digits}g}"
+        if struct.pack("<f", float(text)) == packed:
+            break
+    number = float(text)
+    plain = repr(number)
+    if "e" in plain or not (number == 0.0 or 1e-4 <= abs(number) < 1e7):
+        mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
+        return f"{mantissa}e{int(exponent)}"
+    return plain
+
+
+def literal(const: Const, dialect: Dialect) -> str:
+    """The literal in a dialect."""
+    if const.type == BOOL:
+        return "true" if const.value else "false"
+    if const.type == F32:
+        return shortest(float(const.value)) + dialect.float_suffix
+    return f"{const.value}u" if const.type == U32 else str(const.value)

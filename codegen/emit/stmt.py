@@ -1,0 +1,96 @@
+"""Statements and whole functions as text."""
+
+from __future__ import annotations
+
+from codegen.emit import wrap
+from codegen.emit.dialect import Dialect
+from codegen.emit.expr import ExprPrinter
+from codegen.ir import nodes as ir
+from codegen.ir.types import BOOL, Struct, Type
+
+_STEP = "    "
+
+
+class StmtPrinter:
+    """Prints statements of one dialect."""
+
+    def __init__(self, dialect: Dialect) -> None:
+        self.dialect = dialect
+        self.expr = ExprPrinter(dialect)
+
+    def type_name(self, type_: Type) -> str:
+        """The spelling of a type where something is declared: with the dialect's precision, if it has one."""
+        name = self.dialect.types.get(type_.name, type_.name)
+        plain = type_ == BOOL or isinstance(type_, Struct) or not self.dialect.precision
+        return name if plain else f"{self.dialect.precision} {name}"
+
+    def declare(self, name: str, type_: Type) -> str:
+        """A parameter or field."""
+        if self.dialect.declaration == "name: type":
+            return f"{name}: {self.type_name(type_)}"
+        return f"{self.type_name(type_)} {name}"
+
+    def let(self, s: ir.Let) -> str:
+        value = self.expr.show(s.value)
+        if self.dialect.declaration == "name: type":
+            if not s.mutable:
+                return f"let {s.name} = {value};"
+            return f"var {s.name}: {self.type_name(s.value.type)} = {value};"
+        return f"{self.type_name(s.value.type)} {s.name} = {value};"
+
+    def block(self, body: tuple[ir.Stmt, ...], indent: str) -> list[str]:
+        """The lines of a block."""
+        lines: list[str] = []
+        for s in body:
+            match s:
+                case ir.Let():
+                    lines += wrap.code(self.let(s), indent)
+                case ir.Assign():
+                    lines += wrap.code(f"{s.name} = {self.expr.show(s.value)};", indent)
+                case ir.Return():
+                    lines += wrap.code(f"return {self.expr.show(s.value)};", indent)
+                case ir.If():
+                    lines += self.branch(s, indent)
+                case ir.For():
+                    lines += [
+                        f"{indent}{self.loop_head(s)}",
+                        *self.block(s.body, indent + _STEP),
+                        indent + "}",
+                    ]
+        return lines
+
+    def branch(self, s: ir.If, indent: str, lead: str = "") -> list[str]:
+        lines = [f"{indent}{lead}if ({self.expr.show(s.condition)}) {{", *self.block(s.then, indent + _STEP)]
+        if len(s.orelse) == 1 and isinstance(s.orelse[0], ir.If):
+            return [*lines, *self.branch(s.orelse[0], indent, "} else ")]
+        if s.orelse:
+            lines += [indent + "} else {", *self.block(s.orelse, indent + _STEP)]
+        return [*lines, indent + "}"]
+
+    def loop_head(self, s: ir.For) -> str:
+        if self.dialect.declaration == "name: type":
+            return f"for (var {s.name} = {s.start}; {s.name} < {s.stop}; {s.name}++) {{"
+        i32 = self.dialect.types["i32"]
+        return f"for ({i32} {s.name} = {s.start}; {s.name} < {s.stop}; {s.name}++) {{"
+
+    def function(self, f: ir.Function) -> list[str]:
+        """A whole definition."""
+        parameters = ", ".join(self.declare(p.name, p.type) for p in f.parameters)
+        if self.dialect.declaration == "name: type":
+            head = f"fn {f.name}({parameters}) -> {self.type_name(f.returns)} {{"
+        else:
+            head = f"{self.dialect.qualifier}{self.type_name(f.returns)} {f.name}({parameters}) {{"
+        return [*wrap.code(head, ""), *self.block(f.body, _STEP), "}"]
+
+    def struct(self, s: Struct) -> list[str]:
+        """A struct definition."""
+        if self.dialect.declaration == "name: type":
+            return [
+                f"struct {s.name} {{",
+                *(f"{_STEP}{self.declare(f.name, f.type)}," for f in s.fields),
+                "}",
+            ]
+        fields = [f"{_STEP}{self.declare(f.name, f.type)};" for f in s.fields]
+        if self.dialect.structs == "compound":
+            return [f"typedef struct {s.name} {{", *fields, f"}} {s.name};"]
+        return [f"struct {s.name} {{", *fields, "};"]

@@ -1,0 +1,50 @@
+"""What a user may be told: one clear sentence that says where and what is nearest."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+class UserError(Exception):
+    """Bad input or usage; the command line prints the sentence and exits with status 2."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A position in a source file: path as shown to the user, 1-based line, 1-based column."""
+
+    path: str
+    line: int
+    column: int = 1
+    text: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.path}:{self.line}:{self.column}"
+
+
+class SourceError(UserError):
+    """A sentence about a place in the single source, printed with the line and a caret under it."""
+
+    def __init__(self, place: Place, sentence: str) -> None:
+        self.place = place
+        self.sentence = sentence
+        caret = f"\n    {place.text}\n    {' ' * (place.column - 1)}^" if place.text else ""
+        super().__init__(f"{place}: {sentence}{caret}")
+
+
+def nearest(name: str, valid: Iterable[str]) -> str:
+    """The hint '; did you mean "x"?' for the valid name nearest to `name`, or the list where it is short."""
+    names = sorted(valid)
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    if close:
+        return f'; did you mean "{close[0]}"?'
+    if 0 < len(names) <= 12:
+        return f"; valid names: {', '.join(names)}"
+    return ""
+
+
+def unknown(kind: str, name: str, valid: Iterable[str]) -> UserError:
+    """The error for a name that is not among the valid ones."""
+    return UserError(f'unknown {kind} "{name}"{nearest(name, valid)}')

@@ -1,0 +1,141 @@
+"""Values as arrays: scalars (N,), vectors (N, size), structs as dicts; and the arithmetics over them."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.errors import UserError, nearest, unknown
+from codegen.ir.types import BOOL, F32, I32, U32, Scalar, Struct, Type, Vector
+
+Array = npt.NDArray[Any]
+Value = Array | dict[str, "Value"]
+
+INTEGER_TYPES: dict[Type, type[np.generic]] = {I32: np.int32, U32: np.uint32, BOOL: np.bool_}
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """How floats are held and which functions work on them (`m` in the op registry's meanings)."""
+
+    name: str
+    floats: type[np.generic]
+    namespace: Any
+    literal: Callable[[float], Any]
+
+    def dtype(self, element: Scalar) -> type[np.generic]:
+        return self.floats if element == F32 else INTEGER_TYPES[element]
+
+
+def _float_to_bits(x: Array) -> Array:
+    return np.asarray(x, np.float32).view(np.uint32)
+
+
+def _bits_to_float(x: Array) -> Array:
+    return np.asarray(x, np.uint32).view(np.float32)
+
+
+def _numpy_namespace(floats: type[np.generic]) -> SimpleNamespace:
+    def to_float(x: Array) -> Array:
+        return _bits_to_float(x).astype(floats)
+
+    names = "abs minimum maximum floor sqrt exp exp2 log log2 sin cos arctan2 stack logical_and logical_or logical_not"
+    functions = {name: getattr(np, name) for name in names.split()}
+    return SimpleNamespace(**functions, float_to_bits=_float_to_bits, bits_to_float=to_float)
+
+
+ARITHMETICS = ("float32", "float64", "mpmath")
+
+
+@functools.cache
+def arithmetic(name: str) -> Arithmetic:
+    """An arithmetic by name; raises UserError for an unknown one. mpmath is imported only when asked for."""
+    if name not in ARITHMETICS:
+        raise unknown("arithmetic", name, ARITHMETICS)
+    if name == "mpmath":
+        import mpmath
+
+        from codegen.evaluate.precise import namespace
+
+        return Arithmetic(name, np.object_, namespace(), mpmath.mpf)
+    floats = np.float32 if name == "float32" else np.float64
+    return Arithmetic(name, floats, _numpy_namespace(floats), floats)
+
+
+def convert_inputs(
+    parameters: Mapping[str, Type], inputs: Mapping[str, Any], arithmetic: Arithmetic, function: str
+) -> tuple[dict[str, Value], int]:
+    """Inputs as arrays of the arithmetic, and their common length N; single values are repeated.
+
+    Raises UserError for missing or unknown names and for shapes that do not fit.
+    """
+    for name in inputs:
+        if name not in parameters:
+            raise UserError(f'{function} has no parameter "{name}"{nearest(name, parameters)}')
+    missing = [name for name in parameters if name not in inputs]
+    if missing:
+        raise UserError(f"{function} needs {', '.join(missing)}")
+    arrays = {n: _convert(f"{function}: {n}", t, inputs[n], arithmetic) for n, t in parameters.items()}
+    lengths = {len(a) for value in arrays.values() for a in _leaf_arrays(value)}
+    counts = lengths - {1}
+    if len(counts) > 1:
+        raise UserError(f"{function}: inputs have different lengths: {sorted(lengths)}")
+    count = counts.pop() if counts else 1
+    return {n: broadcast(value, count) for n, value in arrays.items()}, count
+
+
+def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Value:
+    if isinstance(type_, Struct):
+        if not isinstance(given, Mapping):
+            raise UserError(f"{where} is a {type_.name}: give its fields")
+        fields = {f.name: f.type for f in type_.fields}
+        for name in given:
+            if name not in fields:
+                raise UserError(f'{where} has no field "{name}"{nearest(name, fields)}')
+        missing = [name for name in fields if name not in given]
+        if missing:
+            raise UserError(f"{where} lacks {', '.join(missing)}")
+        return {n: _convert(f"{where}.{n}", t, given[n], arithmetic) for n, t in fields.items()}
+    element = type_.element if isinstance(type_, Vector) else type_
+    a = np.asarray(given)
+    if arithmetic.floats is np.object_ and element == F32:
+        a = np.frompyfunc(arithmetic.literal, 1, 1)(a.astype(np.float64) if a.dtype != object else a)
+        a = np.asarray(a, dtype=object)
+    else:
+        a = a.astype(arithmetic.dtype(element))
+    shape: tuple[int, ...] = (type_.size,) if isinstance(type_, Vector) else ()
+    if a.shape == shape:
+        a = a[None]
+    if a.ndim != 1 + len(shape) or a.shape[1:] != shape:
+        expected = "(N,)" if not shape else f"(N, {shape[0]})"
+        raise UserError(f"{where} has shape {a.shape}, but {type_.name} needs {expected}")
+    return a
+
+
+def _leaf_arrays(value: Value) -> list[Array]:
+    if isinstance(value, dict):
+        return [a for v in value.values() for a in _leaf_arrays(v)]
+    return [value]
+
+
+def broadcast(value: Value, count: int) -> Value:
+    """The value with `count` lanes, repeated from one lane where needed."""
+    if isinstance(value, dict):
+        return {n: broadcast(v, count) for n, v in value.items()}
+    return np.broadcast_to(value, (count, *value.shape[1:]))
+
+
+def choose(condition: Array, if_true: Value, if_false: Value) -> Value:
+    """Lane by lane choice between two values of one shape."""
+    if isinstance(if_true, dict):
+        assert isinstance(if_false, dict)
+        return {n: choose(condition, v, if_false[n]) for n, v in if_true.items()}
+    assert not isinstance(if_false, dict)
+    wide = condition[:, None] if if_true.ndim == 2 else condition
+    return np.where(wide, if_true, if_false)

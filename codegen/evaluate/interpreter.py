@@ -1,0 +1,163 @@
+"""The interpreter: the definition of the IR, and a fourth target that needs no device.
+
+Every operation is rounded on its own (float32 stays float32). Both sides of a `Select` and both branches of an
+`If` are computed for all lanes and chosen lane by lane; lanes that have returned keep their value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from codegen.evaluate.arrays import Arithmetic, Array, Value, choose, convert_inputs
+from codegen.evaluate.arrays import arithmetic as find_arithmetic
+from codegen.ir import nodes as ir
+from codegen.ir.types import F32, U32, Scalar, Struct, Type, Vector
+from codegen.library import Library
+from codegen.ops import BUILTINS, OPERATORS
+
+
+def evaluate(library: Library, name: str, inputs: Mapping[str, Any], arithmetic: str = "float32") -> Value:
+    """The function's values over arrays of inputs.
+
+    inputs      parameter name -> array: scalars (N,), vectors (N, size), structs as dicts; single values repeat
+    arithmetic  "float32" (op by op), "float64", or "mpmath" (at mpmath's current precision)
+    returns     scalars (N,), vectors (N, size), structs as dicts of those
+    raises      UserError for unknown functions, parameters or shapes
+    """
+    chosen = find_arithmetic(arithmetic)
+    function = library.function(name)
+    arrays, count = convert_inputs({p.name: p.type for p in function.parameters}, inputs, chosen, name)
+    with np.errstate(all="ignore"):  # lanes that a branch does not take may overflow or divide by zero
+        return _Frame(library, chosen, function, arrays, count).run()
+
+
+class _Frame:
+    """One call: its locals, which lanes still run, and what has been returned so far."""
+
+    def __init__(
+        self,
+        library: Library,
+        arithmetic: Arithmetic,
+        function: ir.Function,
+        inputs: dict[str, Value],
+        count: int,
+    ) -> None:
+        self.library = library
+        self.arithmetic = arithmetic
+        self.function = function
+        self.scope: dict[str, Value] = dict(inputs)
+        self.count = count
+        self.result: Value | None = None
+        self.returned: Array = np.zeros(count, np.bool_)
+
+    def run(self) -> Value:
+        self.block(self.function.body, np.ones(self.count, np.bool_))
+        assert self.result is not None
+        return self.result
+
+    def block(self, body: tuple[ir.Stmt, ...], active: Array) -> None:
+        for s in body:
+            match s:
+                case ir.Let():
+                    self.scope[s.name] = self.expr(s.value)
+                case ir.Assign():
+                    value = self.expr(s.value)
+                    live = active & ~self.returned
+                    self.scope[s.name] = choose(live, value, self.scope[s.name])
+                case ir.If():
+                    condition = self.array(s.condition)
+                    self.block(s.then, active & condition)
+                    self.block(s.orelse, active & ~condition)
+                case ir.For():
+                    for i in range(s.start, s.stop):
+                        self.scope[s.name] = np.full(self.count, i, np.int32)
+                        self.block(s.body, active)
+                case ir.Return():
+                    value = self.expr(s.value)
+                    live = active & ~self.returned
+                    self.result = value if self.result is None else choose(live, value, self.result)
+                    self.returned = self.returned | live
+
+    def array(self, e: ir.Expr) -> Array:
+        value = self.expr(e)
+        assert not isinstance(value, dict)
+        return value
+
+    def expr(self, e: ir.Expr) -> Value:
+        m = self.arithmetic.namespace
+        match e:
+            case ir.Const():
+                return self.constant(e)
+            case ir.Var():
+                return self.scope[e.name]
+            case ir.Unary():
+                return self.fit(e.type, OPERATORS[e.op].meaning(m, self.array(e.operand)))
+            case ir.Binary():
+                a, b = self.array(e.left), self.array(e.right)
+                if a.ndim != b.ndim:
+                    a, b = (a[:, None], b) if a.ndim < b.ndim else (a, b[:, None])
+                return self.fit(e.type, OPERATORS[e.op].meaning(m, a, b))
+            case ir.Builtin():
+                args = [self.array(a) for a in e.args]
+                return self.fit(e.type, BUILTINS[e.op].meaning(m, *args))
+            case ir.Call():
+                return self.call(e)
+            case ir.Construct():
+                return self.construct(e.type, [self.expr(a) for a in e.args])
+            case ir.Convert():
+                return self.convert(e.type, self.array(e.operand))
+            case ir.Member():
+                value = self.expr(e.value)
+                assert isinstance(value, dict)
+                return value[e.name]
+            case ir.Swizzle():
+                columns = ["xyzw".index(c) for c in e.components]
+                a = self.array(e.value)
+                return a[:, columns[0]] if len(columns) == 1 else a[:, columns]
+            case ir.Select():
+                return choose(self.array(e.condition), self.expr(e.if_true), self.expr(e.if_false))
+
+    def constant(self, e: ir.Const) -> Array:
+        if e.type == F32:
+            value = self.arithmetic.literal(float(e.value))
+            filled = np.empty(self.count, self.arithmetic.floats)
+            filled.fill(value)
+            return filled
+        assert isinstance(e.type, Scalar)
+        return np.full(self.count, e.value, self.arithmetic.dtype(e.type))
+
+    def fit(self, type_: Type, value: Any) -> Array:
+        """The value in the arithmetic's own dtype: numpy widens in places (comparisons of mpmath numbers)."""
+        element = type_.element if isinstance(type_, Vector) else type_
+        assert isinstance(element, Scalar)
+        return np.asarray(value).astype(self.arithmetic.dtype(element), copy=False)
+
+    def call(self, e: ir.Call) -> Value:
+        function = self.library.function(e.function)
+        inputs = {p.name: self.expr(a) for p, a in zip(function.parameters, e.args, strict=True)}
+        return _Frame(self.library, self.arithmetic, function, inputs, self.count).run()
+
+    def construct(self, type_: Type, parts: list[Value]) -> Value:
+        if isinstance(type_, Struct):
+            return {f.name: part for f, part in zip(type_.fields, parts, strict=True)}
+        assert isinstance(type_, Vector)
+        columns: list[Array] = []
+        for part in parts:
+            assert not isinstance(part, dict)
+            columns += [part] if part.ndim == 1 else [part[:, k] for k in range(part.shape[1])]
+        if len(columns) == 1:
+            columns *= type_.size
+        return np.stack(columns, axis=-1)
+
+    def convert(self, type_: Type, value: Array) -> Array:
+        assert isinstance(type_, Scalar)
+        if type_ == F32 and self.arithmetic.name == "mpmath":
+            return np.asarray([self.arithmetic.literal(int(x)) for x in value], dtype=object)
+        if value.dtype == object:
+            return np.asarray([int(x) for x in value]).astype(self.arithmetic.dtype(type_))
+        if type_ == U32 and value.dtype.kind == "f":
+            return value.astype(np.float64).astype(np.int64).astype(np.uint32)
+        return value.astype(self.arithmetic.dtype(type_))

@@ -1,0 +1,42 @@
+"""The namespace of mpmath arithmetic: numpy's names over arrays of mpf, at mpmath's current precision."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import mpmath
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[Any]
+
+
+def namespace() -> SimpleNamespace:
+    def each(function: Callable[..., Any], arity: int = 1) -> Callable[..., Any]:
+        return np.frompyfunc(function, arity, 1)
+
+    def to_precise(x: Array) -> Array:
+        return each(mpmath.mpf)(np.asarray(x, np.uint32).view(np.float32).astype(np.float64)).astype(object)
+
+    return SimpleNamespace(
+        abs=each(abs),
+        minimum=each(min, 2),
+        maximum=each(max, 2),
+        floor=each(mpmath.floor),
+        sqrt=each(mpmath.sqrt),
+        exp=each(mpmath.exp),
+        exp2=each(lambda x: mpmath.power(2, x)),
+        log=each(lambda x: mpmath.log(x) if x > 0 else mpmath.mpf("-inf")),
+        log2=each(lambda x: mpmath.log(x, 2) if x > 0 else mpmath.mpf("-inf")),
+        sin=each(mpmath.sin),
+        cos=each(mpmath.cos),
+        arctan2=each(mpmath.atan2, 2),
+        stack=np.stack,
+        logical_and=np.logical_and,
+        logical_or=np.logical_or,
+        logical_not=np.logical_not,
+        float_to_bits=lambda x: np.asarray(x, np.float32).view(np.uint32),
+        bits_to_float=to_precise,
+    )

@@ -1,0 +1,1 @@
+"""Front end: Python's own parser, then name resolution and typing. Nothing of the source is executed."""

@@ -1,0 +1,68 @@
+"""Types and domains as signatures state them: names, `Annotated[type, domain]`, and aliases of those."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from codegen.errors import nearest
+from codegen.frontend import constants
+from codegen.frontend.source import LANG, SourceFile
+from codegen.ir.domains import MARKERS, Domain
+from codegen.ir.types import VALUE_TYPES, Type
+
+if TYPE_CHECKING:
+    from codegen.frontend.resolve import Resolver
+
+
+def read(
+    resolver: Resolver, file: SourceFile, node: ast.expr | None, owner: ast.AST
+) -> tuple[Type, Domain | None]:
+    """The type and domain of an annotation; raises SourceError where it is missing or unknown."""
+    match node:
+        case None:
+            raise file.error(owner, "state the type, for instance f32 or Annotated[f32, Interval(0.0, 1.0)]")
+        case ast.Name(id=name):
+            return _named(resolver, file, node, name)
+        case ast.Subscript(value=ast.Name(id="Annotated"), slice=ast.Tuple(elts=[base, *markers])):
+            type_, _ = read(resolver, file, base, owner)
+            for marker in markers:
+                domain = _marker(resolver, file, marker)
+                if domain is not None:
+                    return type_, domain
+            raise file.error(node, f"Annotated needs a domain: {', '.join(MARKERS)}")
+        case _:
+            raise file.error(node, "a type is a name or Annotated[type, domain]")
+
+
+def _named(resolver: Resolver, file: SourceFile, node: ast.expr, name: str) -> tuple[Type, Domain | None]:
+    where, original = resolver.find(file, name) or (None, name)
+    if where is None and original in VALUE_TYPES and file.imports.get(name, (LANG, name))[0] == LANG:
+        return VALUE_TYPES[original], None
+    if where is not None and original in where.structs:
+        return resolver.struct(where, original).type, None
+    if where is not None and original in where.values:
+        return read(resolver, where, where.values[original], node)
+    names = [*VALUE_TYPES, *file.imports, *file.structs]
+    raise file.error(node, f'unknown type "{name}"{nearest(name, names)}')
+
+
+def _marker(resolver: Resolver, file: SourceFile, node: ast.expr) -> Domain | None:
+    if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
+        return None
+    kind = MARKERS.get(node.func.id)
+    if kind is None:
+        raise file.error(node, f'unknown domain "{node.func.id}"{nearest(node.func.id, MARKERS)}')
+
+    def value(argument: ast.expr) -> float | str:
+        if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
+            return argument.value
+        number = constants.fold(argument, lambda n: resolver.constant(file, n))
+        if number is None:
+            raise file.error(argument, "a domain is stated in numbers")
+        return float(number)
+
+    try:
+        return kind(*map(value, node.args), **{k.arg or "": value(k.value) for k in node.keywords})  # type: ignore[arg-type]  # checked by the dataclass itself
+    except TypeError:
+        raise file.error(node, f"wrong arguments for {node.func.id}") from None

@@ -1,0 +1,186 @@
+"""Names across files: where a function, struct, constant or alias is defined; lowered on first use."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+from codegen import names
+from codegen.errors import Place, SourceError, UserError, nearest, unknown
+from codegen.frontend import annotations, constants, docstring
+from codegen.frontend.source import LANG, ROOT_PACKAGE, SourceFile, parse_file
+from codegen.ir.domains import Domain
+from codegen.ir.nodes import Doc, Function, Parameter, StructDef, callees
+from codegen.ir.types import Field, Struct, Type
+
+KINDS = ("variant", "printed", "helper")
+
+
+class Resolver:
+    """All sources below one folder; functions and structs become IR when first asked for."""
+
+    def __init__(self, root: Path) -> None:
+        """`root` is the folder of the package shaderlib; raises UserError where there is none."""
+        if not root.is_dir():
+            raise UserError(f'no shader sources: "{root}" is not a folder')
+        self.files: dict[str, SourceFile] = {}
+        self._functions: dict[str, Function] = {}
+        self._structs: dict[str, StructDef] = {}
+        self._lowering: list[str] = []
+        for path in sorted(root.rglob("*.py")):
+            relative = path.relative_to(root)
+            if path.name in ("lang.py", "__init__.py"):
+                continue
+            module = ".".join((ROOT_PACKAGE, *relative.with_suffix("").parts))
+            self.files[module] = parse_file(path, module, f"{ROOT_PACKAGE}/{relative.as_posix()}")
+        self.where: dict[str, SourceFile] = {}
+        for file in self.files.values():
+            for name, node in [*file.functions.items(), *file.structs.items()]:
+                if name in self.where:
+                    other = self.where[name].shown_path
+                    raise file.error(node, f'"{name}" is already defined in {other}')
+                self.where[name] = file
+
+    def find(self, file: SourceFile, name: str) -> tuple[SourceFile, str] | None:
+        """The file that defines `name` as seen in `file`, and its name there; None for built-in names."""
+        if name in file.imports:
+            module, original = file.imports[name]
+            if module == LANG:
+                return None
+            found = self.files.get(module)
+            if found is None:
+                raise SourceError(
+                    Place(file.shown_path, 1), f'no source "{module}" to import{nearest(module, self.files)}'
+                )
+            if original in found.imports:
+                return self.find(found, original)
+            defined = [*found.values, *found.structs, *found.functions]
+            if original not in defined:
+                sentence = f'{found.shown_path} defines no "{original}"{nearest(original, defined)}'
+                raise SourceError(Place(file.shown_path, 1), sentence)
+            return found, original
+        if name in file.values or name in file.structs or name in file.functions:
+            return file, name
+        return None
+
+    def constant(self, file: SourceFile, name: str) -> constants.Number | None:
+        """The value of a named constant as seen in `file`; None where the name is not a constant."""
+        found = self.find(file, name)
+        if found is None:
+            return None
+        where, original = found
+        value = where.values.get(original)
+        return None if value is None else constants.fold(value, lambda n: self.constant(where, n))
+
+    def constant_type(self, file: SourceFile, name: str) -> Type | None:
+        """The type that a constant's annotation states; None without one."""
+        found = self.find(file, name)
+        if found is None:
+            return None
+        where, original = found
+        node = where.annotations.get(original)
+        return annotations.read(self, where, node, node)[0] if node is not None else None
+
+    def struct(self, file: SourceFile, name: str) -> StructDef:
+        """The struct that `file` defines under `name`."""
+        if name not in self._structs:
+            node = file.structs[name]
+            names.check(name, "struct", file.place(node))
+            if [d.id for d in node.decorator_list if isinstance(d, ast.Name)] != ["struct"]:
+                raise file.error(node, "a class in a shader source is a struct: decorate it with @struct")
+            doc = docstring.parse(ast.get_docstring(node, clean=False))
+            fields: list[Field] = []
+            for item in node.body:
+                match item:
+                    case ast.Expr(value=ast.Constant(value=str())):
+                        continue
+                    case ast.AnnAssign(target=ast.Name(id=field), annotation=annotation, value=None):
+                        names.check(field, "field", file.place(item))
+                        fields.append(Field(field, *annotations.read(self, file, annotation, item)))
+                    case _:
+                        raise file.error(item, "a struct holds annotated fields and a docstring only")
+            self._structs[name] = StructDef(Struct(name, tuple(fields)), file.section, doc, file.place(node))
+        return self._structs[name]
+
+    def function(self, name: str) -> Function:
+        """The IR of a function; raises UserError for an unknown name, SourceError for a bad source."""
+        if name in self._functions:
+            return self._functions[name]
+        file = self.where.get(name)
+        if file is None or name not in file.functions:
+            raise unknown("function", name, self.function_names())
+        node = file.functions[name]
+        if name in self._lowering:
+            cycle = " -> ".join([*self._lowering[self._lowering.index(name) :], name])
+            raise file.error(node, f"recursion is not possible in shaders: {cycle}")
+        self._lowering.append(name)
+        try:
+            lowered = self._lower(file, node)
+            for callee in callees(lowered):
+                self.function(callee)
+        finally:
+            self._lowering.pop()
+        self._functions[name] = lowered
+        return lowered
+
+    def function_names(self) -> list[str]:
+        """Every function of the sources."""
+        return [name for file in self.files.values() for name in file.functions]
+
+    def signature(self, file: SourceFile, node: ast.FunctionDef) -> tuple[tuple[Parameter, ...], Type]:
+        """Parameters and result type of a function, from its annotations alone."""
+        a = node.args
+        extra = [*a.posonlyargs, *a.kwonlyargs, *filter(None, (a.vararg, a.kwarg)), *a.defaults]
+        if extra:
+            raise file.error(extra[0], "a shader function has plain parameters without defaults")
+        parameters = []
+        for argument in a.args:
+            names.check(argument.arg, "parameter", file.place(argument))
+            type_, domain = annotations.read(self, file, argument.annotation, argument)
+            domain = self._needs_domain(file, argument, type_, domain)
+            parameters.append(Parameter(argument.arg, type_, domain))
+        return tuple(parameters), annotations.read(self, file, node.returns, node)[0]
+
+    def kind(self, file: SourceFile, node: ast.FunctionDef) -> tuple[str, str | None]:
+        """What the decorators say: the function's kind and, for variants and printed forms, its base."""
+        for decorator in node.decorator_list:
+            match decorator:
+                case ast.Name(id="helper"):
+                    return "helper", None
+                case ast.Call(
+                    func=ast.Name(id=("variant" | "printed") as kind),
+                    args=[ast.Constant(value=str() as base)],
+                ):
+                    if base not in self.where:
+                        raise file.error(
+                            decorator, f'unknown base "{base}"{nearest(base, self.function_names())}'
+                        )
+                    return kind, base
+                case _:
+                    raise file.error(
+                        decorator, 'decorators are @helper, @variant("base") and @printed("base")'
+                    )
+        return "base", None
+
+    def _needs_domain(
+        self, file: SourceFile, argument: ast.arg, type_: Type, domain: Domain | None
+    ) -> Domain | None:
+        if (
+            domain is None
+            and not isinstance(type_, Struct)
+            and type_.name not in ("bool", "u32", "i32", "uvec2", "uvec3")
+        ):
+            raise file.error(
+                argument, f'state the domain of "{argument.arg}": Annotated[{type_.name}, Interval(...)]'
+            )
+        return domain
+
+    def _lower(self, file: SourceFile, node: ast.FunctionDef) -> Function:
+        from codegen.frontend.statements import lower_body  # imported here: it needs Resolver for its types
+
+        names.check(node.name, "function", file.place(node))
+        parameters, returns = self.signature(file, node)
+        kind, base = self.kind(file, node)
+        doc: Doc = docstring.parse(ast.get_docstring(node, clean=False))
+        body = lower_body(self, file, node, parameters, returns)
+        return Function(node.name, file.section, kind, base, parameters, returns, body, doc, file.place(node))

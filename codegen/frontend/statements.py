@@ -1,0 +1,175 @@
+"""Statements: assignments, branches, bounded loops, returns."""
+
+from __future__ import annotations
+
+import ast
+from collections import ChainMap
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from codegen import names
+from codegen.errors import nearest
+from codegen.frontend import constants
+from codegen.frontend.expressions import ExpressionLowering
+from codegen.frontend.source import SourceFile
+from codegen.ir import nodes as ir
+from codegen.ir.types import BOOL, I32, Type
+
+if TYPE_CHECKING:
+    from codegen.frontend.resolve import Resolver
+
+MAX_ITERATIONS = 65536
+"""Longest loop the front end accepts; shaders hang a machine long before this is useful."""
+
+
+def lower_body(
+    resolver: Resolver,
+    file: SourceFile,
+    node: ast.FunctionDef,
+    parameters: tuple[ir.Parameter, ...],
+    returns: Type,
+) -> tuple[ir.Stmt, ...]:
+    """The body of a function; every path must end in a return of the stated type."""
+    lowering = StatementLowering(resolver, file, parameters, returns)
+    body = node.body
+    if body and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
+        body = body[1:]
+    lowered = lowering.block(body)
+    if not _returns(lowered):
+        raise file.error(node, f'not every path of "{node.name}" returns a value')
+    return _mark_mutable(lowered)
+
+
+class StatementLowering:
+    """Lowers the statements of one function; a local lives from its first assignment to its block's end."""
+
+    def __init__(
+        self, resolver: Resolver, file: SourceFile, parameters: tuple[ir.Parameter, ...], returns: Type
+    ) -> None:
+        self.resolver = resolver
+        self.file = file
+        self.returns = returns
+        self.parameters = {p.name for p in parameters}
+        self.scope: ChainMap[str, Type] = ChainMap({p.name: p.type for p in parameters})
+        self.loop_names: set[str] = set()
+        self.ended: set[str] = set()
+
+    def block(self, body: list[ast.stmt]) -> tuple[ir.Stmt, ...]:
+        """A block with its own scope."""
+        outer = self.scope
+        self.scope = self.scope.new_child()
+        lowered = []
+        for position, node in enumerate(body):
+            lowered.append(self.statement(node))
+            if _returns((lowered[-1],)) and position + 1 < len(body):
+                raise self.file.error(body[position + 1], "this is never reached")
+        self.ended |= set(self.scope.maps[0])
+        self.scope = outer
+        return tuple(lowered)
+
+    def expression(self, node: ast.expr, expected: Type | None = None) -> ir.Expr:
+        if isinstance(node, ast.Name) and node.id not in self.scope and node.id in self.ended:
+            raise self.file.error(
+                node, f'"{node.id}" was assigned in a block that has ended; assign it before the block'
+            )
+        return ExpressionLowering(self.resolver, self.file, self.scope).lower(node, expected)
+
+    def statement(self, node: ast.stmt) -> ir.Stmt:
+        match node:
+            case ast.Return(value=ast.expr() as value):
+                return ir.Return(self.expression(value, self.returns), node.lineno)
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                return self.assignment(node, name, value)
+            case ast.AnnAssign():
+                raise self.file.error(node, "types of locals are inferred: write name = value")
+            case ast.AugAssign(target=ast.Name(id=name), op=op, value=value):
+                joined = ast.BinOp(left=ast.Name(id=name, ctx=ast.Load()), op=op, right=value)
+                ast.copy_location(joined, node)
+                ast.copy_location(joined.left, node)
+                return self.assignment(node, name, joined)
+            case ast.Assign():
+                raise self.file.error(node, "assign one name at a time; components are read only")
+            case ast.If(test=test, body=body, orelse=orelse):
+                condition = self.expression(test, BOOL)
+                return ir.If(condition, self.block(body), self.block(orelse), node.lineno)
+            case ast.For():
+                return self.loop(node)
+            case ast.While():
+                raise self.file.error(node, "loops are bounded: write for i in range(CONSTANT)")
+            case ast.Return():
+                raise self.file.error(node, "return a value")
+            case _:
+                what = type(node).__name__
+                raise self.file.error(node, f"{what} is outside the shader subset of Python")
+
+    def assignment(self, node: ast.stmt, name: str, value: ast.expr) -> ir.Stmt:
+        known = self.scope.get(name)
+        if name in self.parameters:
+            raise self.file.error(node, f'parameter "{name}" is read only; use another name')
+        if name in self.loop_names:
+            raise self.file.error(node, f'loop variable "{name}" is read only')
+        e = self.expression(value, known)
+        if known is not None:
+            return ir.Assign(name, e, node.lineno)
+        if isinstance(node, ast.AugAssign):
+            raise self.file.error(node, f'unknown name "{name}"{nearest(name, self.scope)}')
+        if name in self.resolver.where or self.resolver.find(self.file, name) or name in self.file.imports:
+            raise self.file.error(node, f'"{name}" already names something else in this file or the library')
+        names.check(name, "local", self.file.place(node))
+        self.scope[name] = e.type
+        return ir.Let(name, e, False, node.lineno)
+
+    def loop(self, node: ast.For) -> ir.Stmt:
+        match node:
+            case ast.For(
+                target=ast.Name(id=name),
+                iter=ast.Call(func=ast.Name(id="range"), args=bounds, keywords=[]),
+                orelse=[],
+            ) if 1 <= len(bounds) <= 2:
+                values = [constants.fold(b, lambda n: self.resolver.constant(self.file, n)) for b in bounds]
+            case _:
+                raise self.file.error(node, "a loop is written for i in range(CONSTANT)")
+        if not all(isinstance(v, int) for v in values):
+            raise self.file.error(node, "the bounds of range() must be constant whole numbers")
+        whole = [int(v) for v in values if v is not None]
+        start, stop = (0, whole[0]) if len(whole) == 1 else (whole[0], whole[1])
+        if stop - start > MAX_ITERATIONS:
+            raise self.file.error(node, f"a loop may run {MAX_ITERATIONS} times at most")
+        if name in self.scope:
+            raise self.file.error(node, f'"{name}" is already in use')
+        names.check(name, "local", self.file.place(node))
+        outer = self.scope
+        self.scope = self.scope.new_child({name: I32})
+        self.loop_names.add(name)
+        body = self.block(node.body)
+        self.loop_names.discard(name)
+        self.scope = outer
+        return ir.For(name, start, stop, body, node.lineno)
+
+
+def _returns(body: tuple[ir.Stmt, ...]) -> bool:
+    if not body:
+        return False
+    last = body[-1]
+    return isinstance(last, ir.Return) or (
+        isinstance(last, ir.If) and _returns(last.then) and _returns(last.orelse)
+    )
+
+
+def _mark_mutable(body: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
+    assigned = {s.name for s in ir.statements(body) if isinstance(s, ir.Assign)}
+
+    def mark(part: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
+        marked: list[ir.Stmt] = []
+        for s in part:
+            if isinstance(s, ir.Let):
+                marked.append(replace(s, mutable=s.name in assigned))
+            elif isinstance(s, ir.If):
+                marked.append(replace(s, then=mark(s.then), orelse=mark(s.orelse)))
+            elif isinstance(s, ir.For):
+                marked.append(replace(s, body=mark(s.body)))
+            else:
+                marked.append(s)
+        return tuple(marked)
+
+    return mark(body)

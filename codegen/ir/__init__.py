@@ -1,0 +1,1 @@
+"""The typed intermediate representation: types, domains, nodes, verification, text form."""

@@ -1,0 +1,307 @@
+"""Nodes of the IR.
+
+Expressions are immutable typed trees without side effects. Their evaluation order is the tree; nothing may
+re-associate, fuse or drop an operation except a pass that says so. `Select` evaluates both sides. Statements
+are structured: there is no jump but `Return`, and every path of a function ends in one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+from codegen.errors import Place
+from codegen.ir.domains import Domain
+from codegen.ir.types import Struct, Type
+
+
+@dataclass(frozen=True)
+class Const:
+    """A literal; a float is already rounded to float32."""
+
+    type: Type
+    value: float | int | bool
+
+
+@dataclass(frozen=True)
+class Var:
+    """A parameter or a local."""
+
+    type: Type
+    name: str
+
+
+@dataclass(frozen=True)
+class Unary:
+    """`-`, `~` or `not`."""
+
+    type: Type
+    op: str
+    operand: Expr
+
+
+@dataclass(frozen=True)
+class Binary:
+    """An operator of codegen.ops, named as in the source (`+`, `and`, `<`)."""
+
+    type: Type
+    op: str
+    left: Expr
+    right: Expr
+
+
+@dataclass(frozen=True)
+class Builtin:
+    """A built-in of the op registry."""
+
+    type: Type
+    op: str
+    args: tuple[Expr, ...]
+
+
+@dataclass(frozen=True)
+class Call:
+    """A call of a library function."""
+
+    type: Type
+    function: str
+    args: tuple[Expr, ...]
+
+
+@dataclass(frozen=True)
+class Construct:
+    """A vector from scalars (one: splat) or shorter vectors, or a struct from its fields in order."""
+
+    type: Type
+    args: tuple[Expr, ...]
+
+
+@dataclass(frozen=True)
+class Convert:
+    """A conversion between scalar number types: exact or rounded; to integers truncating."""
+
+    type: Type
+    operand: Expr
+
+
+@dataclass(frozen=True)
+class Member:
+    """A field of a struct value."""
+
+    type: Type
+    value: Expr
+    name: str
+
+
+@dataclass(frozen=True)
+class Swizzle:
+    """Components of a vector, read only; one letter gives a scalar."""
+
+    type: Type
+    value: Expr
+    components: str
+
+
+@dataclass(frozen=True)
+class Select:
+    """`if_true if condition else if_false`; both sides are evaluated."""
+
+    type: Type
+    condition: Expr
+    if_true: Expr
+    if_false: Expr
+
+
+Expr = Const | Var | Unary | Binary | Builtin | Call | Construct | Convert | Member | Swizzle | Select
+
+
+@dataclass(frozen=True)
+class Let:
+    """The first assignment of a local; `mutable` where it is assigned again."""
+
+    name: str
+    value: Expr
+    mutable: bool = False
+    line: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True)
+class Assign:
+    """A later assignment."""
+
+    name: str
+    value: Expr
+    line: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True)
+class If:
+    """A branch on a scalar condition."""
+
+    condition: Expr
+    then: tuple[Stmt, ...]
+    orelse: tuple[Stmt, ...] = ()
+    line: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True)
+class For:
+    """`for name in range(start, stop)` with constant bounds; name is an i32."""
+
+    name: str
+    start: int
+    stop: int
+    body: tuple[Stmt, ...]
+    line: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True)
+class Return:
+    """The function's value."""
+
+    value: Expr
+    line: int = field(default=0, compare=False)
+
+
+Stmt = Let | Assign | If | For | Return
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter with the domain its signature states (None for structs: their fields state it)."""
+
+    name: str
+    type: Type
+    domain: Domain | None
+
+
+@dataclass(frozen=True)
+class Doc:
+    """A parsed docstring: what it is, and its entries (parameters, returns, degenerate, form, source)."""
+
+    summary: str
+    entries: dict[str, str]
+
+
+@dataclass(frozen=True)
+class StructDef:
+    """A public struct with its documentation."""
+
+    type: Struct
+    module: str
+    doc: Doc
+    place: Place
+
+    @property
+    def name(self) -> str:
+        return self.type.name
+
+
+@dataclass(frozen=True)
+class Function:
+    """One function of the library. `kind`: base, variant, printed or helper; `base` names what it varies."""
+
+    name: str
+    module: str
+    kind: str
+    base: str | None
+    parameters: tuple[Parameter, ...]
+    returns: Type
+    body: tuple[Stmt, ...]
+    doc: Doc
+    place: Place
+
+    @property
+    def public(self) -> bool:
+        return self.kind != "helper"
+
+
+def children(e: Expr) -> tuple[Expr, ...]:
+    """The direct operands of an expression, in evaluation order."""
+    match e:
+        case Unary() | Convert():
+            return (e.operand,)
+        case Binary():
+            return (e.left, e.right)
+        case Builtin() | Call() | Construct():
+            return e.args
+        case Member() | Swizzle():
+            return (e.value,)
+        case Select():
+            return (e.condition, e.if_true, e.if_false)
+        case _:
+            return ()
+
+
+def rebuild(e: Expr, parts: tuple[Expr, ...]) -> Expr:
+    """The same expression over other operands."""
+    match e:
+        case Unary() | Convert():
+            return replace(e, operand=parts[0])
+        case Binary():
+            return replace(e, left=parts[0], right=parts[1])
+        case Builtin() | Call() | Construct():
+            return replace(e, args=parts)
+        case Member() | Swizzle():
+            return replace(e, value=parts[0])
+        case Select():
+            return replace(e, condition=parts[0], if_true=parts[1], if_false=parts[2])
+        case _:
+            return e
+
+
+def map_expr(e: Expr, change: Callable[[Expr], Expr]) -> Expr:
+    """The expression with `change` applied to every node, operands first."""
+    return change(rebuild(e, tuple(map_expr(c, change) for c in children(e))))
+
+
+def map_body(body: tuple[Stmt, ...], change: Callable[[Expr], Expr]) -> tuple[Stmt, ...]:
+    """The statements with `change` applied to every expression node."""
+
+    def statement(s: Stmt) -> Stmt:
+        match s:
+            case If():
+                return replace(
+                    s,
+                    condition=map_expr(s.condition, change),
+                    then=map_body(s.then, change),
+                    orelse=map_body(s.orelse, change),
+                )
+            case For():
+                return replace(s, body=map_body(s.body, change))
+            case _:
+                return replace(s, value=map_expr(s.value, change))
+
+    return tuple(statement(s) for s in body)
+
+
+def walk(e: Expr) -> Iterator[Expr]:
+    """Every node of an expression."""
+    yield e
+    for child in children(e):
+        yield from walk(child)
+
+
+def statements(body: tuple[Stmt, ...]) -> Iterator[Stmt]:
+    """Every statement of a body, nested ones included."""
+    for s in body:
+        yield s
+        if isinstance(s, If):
+            yield from statements(s.then)
+            yield from statements(s.orelse)
+        elif isinstance(s, For):
+            yield from statements(s.body)
+
+
+def expressions(body: tuple[Stmt, ...]) -> Iterator[Expr]:
+    """Every expression node of a body."""
+    for s in statements(body):
+        if isinstance(s, If):
+            yield from walk(s.condition)
+        elif not isinstance(s, For):
+            yield from walk(s.value)
+
+
+def callees(function: Function) -> list[str]:
+    """Names of the library functions that a function calls, in order of first call."""
+    return list(dict.fromkeys(e.function for e in expressions(function.body) if isinstance(e, Call)))

@@ -1,0 +1,73 @@
+"""Types of the IR: scalars, vectors and structs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from codegen.ir.domains import Domain
+
+
+@dataclass(frozen=True)
+class Scalar:
+    """A 32-bit scalar (bool: a truth value)."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A short vector; `name` as in the source (vec3, uvec2)."""
+
+    name: str
+    element: Scalar
+    size: int
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field of a struct."""
+
+    name: str
+    type: Type
+    domain: Domain | None = field(compare=False, default=None)
+
+
+@dataclass(frozen=True)
+class Struct:
+    """A struct; two structs are the same type if their names and fields agree."""
+
+    name: str
+    fields: tuple[Field, ...]
+
+    def field(self, name: str) -> Field | None:
+        """The field of that name, or None."""
+        return next((f for f in self.fields if f.name == name), None)
+
+
+Type = Scalar | Vector | Struct
+
+F32, I32, U32, BOOL = Scalar("f32"), Scalar("i32"), Scalar("u32"), Scalar("bool")
+VEC2, VEC3, VEC4 = (Vector(f"vec{n}", F32, n) for n in (2, 3, 4))
+UVEC2, UVEC3 = Vector("uvec2", U32, 2), Vector("uvec3", U32, 3)
+
+VALUE_TYPES: dict[str, Scalar | Vector] = {
+    t.name: t for t in (F32, I32, U32, BOOL, VEC2, VEC3, VEC4, UVEC2, UVEC3)
+}
+
+
+def vector_of(element: Scalar, size: int) -> Scalar | Vector | None:
+    """The vector type of `size` elements (size 1: the scalar itself); None where there is none."""
+    if size == 1:
+        return element
+    prefix = {"f32": "vec", "u32": "uvec"}.get(element.name, "?")
+    found = VALUE_TYPES.get(f"{prefix}{size}")
+    return found
+
+
+def leaves(type_: Type, path: str = "") -> list[tuple[str, Scalar]]:
+    """The scalars a value consists of, in order, with their access paths (".tangent.x")."""
+    if isinstance(type_, Scalar):
+        return [(path, type_)]
+    if isinstance(type_, Vector):
+        return [(f"{path}.{c}", type_.element) for c in "xyzw"[: type_.size]]
+    return [leaf for f in type_.fields for leaf in leaves(f.type, f"{path}.{f.name}")]

@@ -1,0 +1,132 @@
+"""Checks that IR is well formed; run after lowering and after every pass in tests."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from codegen.ir import nodes as ir
+from codegen.ir.types import BOOL, F32, I32, U32, Struct, Type, Vector, vector_of
+from codegen.ops import BUILTINS, OPERATORS
+
+
+class MalformedIR(Exception):
+    """A bug in the front end or in a pass."""
+
+
+Signature = Callable[[str], tuple[tuple[Type, ...], Type] | None]
+
+
+def verify(function: ir.Function, signature: Signature) -> None:
+    """Raise MalformedIR unless every node is typed as the registry says and every path returns.
+
+    `signature` gives the parameter and result types of a called function, or None if there is none.
+    """
+    scope: dict[str, Type] = {}
+    for p in function.parameters:
+        if p.name in scope:
+            raise MalformedIR(f'{function.name}: two parameters named "{p.name}"')
+        scope[p.name] = p.type
+    check = _Checker(function, signature)
+    check.block(function.body, scope, frozenset())
+    if not check.returns(function.body):
+        raise MalformedIR(f"{function.name}: a path without return")
+
+
+class _Checker:
+    def __init__(self, function: ir.Function, signature: Signature) -> None:
+        self.function = function
+        self.signature = signature
+
+    def fail(self, what: str) -> MalformedIR:
+        return MalformedIR(f"{self.function.name}: {what}")
+
+    def returns(self, body: tuple[ir.Stmt, ...]) -> bool:
+        last = body[-1] if body else None
+        if isinstance(last, ir.If):
+            return self.returns(last.then) and self.returns(last.orelse)
+        return isinstance(last, ir.Return)
+
+    def block(
+        self, body: tuple[ir.Stmt, ...], outer: Mapping[str, Type], outer_mutable: frozenset[str]
+    ) -> None:
+        scope, mutable = dict(outer), set(outer_mutable)
+        for s in body:
+            match s:
+                case ir.Let():
+                    if s.name in scope:
+                        raise self.fail(f'"{s.name}" is defined twice')
+                    self.expr(s.value, scope)
+                    scope[s.name] = s.value.type
+                    if s.mutable:
+                        mutable.add(s.name)
+                case ir.Assign():
+                    self.expr(s.value, scope)
+                    if s.name not in mutable or scope[s.name] != s.value.type:
+                        raise self.fail(f'"{s.name}" is not a mutable local of type {s.value.type.name}')
+                case ir.If():
+                    self.expr(s.condition, scope)
+                    if s.condition.type != BOOL:
+                        raise self.fail("a condition that is no truth value")
+                    self.block(s.then, scope, frozenset(mutable))
+                    self.block(s.orelse, scope, frozenset(mutable))
+                case ir.For():
+                    self.block(s.body, {**scope, s.name: I32}, frozenset(mutable))
+                case ir.Return():
+                    self.expr(s.value, scope)
+                    if s.value.type != self.function.returns:
+                        raise self.fail(f"returns {s.value.type.name}")
+
+    def expr(self, e: ir.Expr, scope: Mapping[str, Type]) -> None:
+        for child in ir.children(e):
+            self.expr(child, scope)
+        expected = self.type_of(e, scope)
+        if expected != e.type:
+            shown = getattr(expected, "name", None)
+            raise self.fail(f"{type(e).__name__} is marked {e.type.name} but gives {shown}")
+
+    def type_of(self, e: ir.Expr, scope: Mapping[str, Type]) -> Type | None:
+        types = tuple(c.type for c in ir.children(e))
+        match e:
+            case ir.Const():
+                python = {BOOL: bool, F32: float, I32: int, U32: int}.get(e.type)  # type: ignore[call-overload]  # keyed by every constant type
+                return e.type if type(e.value) is python else None
+            case ir.Var():
+                return scope.get(e.name)
+            case ir.Unary() | ir.Binary():
+                return OPERATORS[e.op].result(types)
+            case ir.Builtin():
+                return BUILTINS[e.op].result(types)
+            case ir.Call():
+                found = self.signature(e.function)
+                return found[1] if found is not None and found[0] == types else None
+            case ir.Convert():
+                return e.type if types[0] in (F32, I32, U32) and e.type in (F32, I32, U32) else None
+            case ir.Select():
+                return types[1] if types[0] == BOOL and types[1] == types[2] else None
+            case ir.Member():
+                found_field = types[0].field(e.name) if isinstance(types[0], Struct) else None
+                return found_field.type if found_field else None
+            case ir.Swizzle():
+                of = types[0]
+                inside = isinstance(of, Vector) and set(e.components) <= set("xyzw"[: of.size])
+                return vector_of(of.element, len(e.components)) if inside and isinstance(of, Vector) else None
+            case ir.Construct():
+                return e.type if self._constructs(e.type, types) else None
+
+    @staticmethod
+    def _constructs(type_: Type, parts: tuple[Type, ...]) -> bool:
+        if isinstance(type_, Struct):
+            return parts == tuple(f.type for f in type_.fields)
+        if not isinstance(type_, Vector):
+            return False
+        elements = [p.element if isinstance(p, Vector) else p for p in parts]
+        size = sum(p.size if isinstance(p, Vector) else 1 for p in parts)
+        return all(x == type_.element for x in elements) and size in (type_.size, 1 if len(parts) == 1 else 0)
+
+
+def verify_selection(functions: tuple[ir.Function, ...]) -> None:
+    """Verify functions that stand together, each after what it calls."""
+    seen: dict[str, tuple[tuple[Type, ...], Type]] = {}
+    for function in functions:
+        verify(function, seen.get)
+        seen[function.name] = (tuple(p.type for p in function.parameters), function.returns)

@@ -1,0 +1,143 @@
+"""The library as the rest of the project sees it: functions, structs and declared error bounds."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import tomllib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from codegen.bounds import Bound, read_bounds
+from codegen.errors import UserError, unknown
+from codegen.frontend.resolve import Resolver
+from codegen.ir.nodes import Function, StructDef, callees, expressions
+from codegen.ir.types import Struct, Type
+
+SECTIONS = ("numeric", "direction", "strand", "fakefur", "shells", "sampling", "lobes", "maps")
+"""Order of the sections in listings and emitted files; unknown sections follow alphabetically."""
+
+VERSION = "0.1.0"
+
+
+def default_root() -> Path:
+    """The folder of the installed package shaderlib, found without importing it."""
+    return Path(__file__).resolve().parent.parent / "shaderlib"
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Functions and structs to emit together, dependencies first, and a hash of the sources they come from."""
+
+    functions: tuple[Function, ...]
+    structs: tuple[StructDef, ...]
+    source_hash: str
+
+
+class Library:
+    """All shading functions below one source folder. Functions are lowered when first asked for."""
+
+    def __init__(self, root: Path) -> None:
+        """Raises UserError or SourceError for sources that cannot be read."""
+        self.root = root
+        self.resolver = Resolver(root)
+
+    @functools.cached_property
+    def functions(self) -> dict[str, Function]:
+        """Every function by name, in catalogue order: section, then base before variants and printed forms."""
+        found = [self.resolver.function(name) for name in self.resolver.function_names()]
+        return {f.name: f for f in sorted(found, key=self._order)}
+
+    @functools.cached_property
+    def public(self) -> dict[str, Function]:
+        """The functions that are not helpers."""
+        return {name: f for name, f in self.functions.items() if f.public}
+
+    def function(self, name: str) -> Function:
+        """One function; raises UserError with the nearest name if there is none."""
+        if name not in self.resolver.where or name not in self.resolver.where[name].functions:
+            raise unknown("function", name, self.public)
+        return self.resolver.function(name)
+
+    @functools.cached_property
+    def structs(self) -> dict[str, StructDef]:
+        """Every struct by name."""
+        return {
+            name: self.resolver.struct(f, name) for f in self.resolver.files.values() for name in f.structs
+        }
+
+    def variants(self, name: str) -> list[Function]:
+        """Variants and printed forms of a function."""
+        return [f for f in self.functions.values() if f.base == name]
+
+    @functools.cached_property
+    def bounds(self) -> dict[str, list[Bound]]:
+        """Declared error bounds by function name, from shaderlib/<section>/bounds.toml."""
+        bounds: dict[str, list[Bound]] = {}
+        for path in sorted(self.root.glob("*/bounds.toml")):
+            shown = f"shaderlib/{path.parent.name}/{path.name}"
+            try:
+                data = tomllib.loads(path.read_text(encoding="utf-8"))
+            except tomllib.TOMLDecodeError as e:
+                raise UserError(f"{shown}: not valid TOML: {e}") from None
+            for name, entries in read_bounds(shown, data).items():
+                if name not in self.resolver.where:
+                    raise unknown(f"function in {shown}", name, self.resolver.function_names())
+                bounds.setdefault(name, []).extend(entries)
+        return bounds
+
+    def select(self, names: Iterable[str] | None = None) -> Selection:
+        """These functions (all public ones if None) and what they need, dependencies first."""
+        wanted = list(self.public) if names is None else list(dict.fromkeys(names))
+        ordered: dict[str, Function] = {}
+
+        def visit(name: str) -> None:
+            if name not in ordered:
+                function = self.function(name)
+                for callee in callees(function):
+                    visit(callee)
+                ordered[name] = function
+
+        for name in wanted:
+            visit(name)
+        structs = self._structs_of(ordered.values())
+        return Selection(tuple(ordered.values()), structs, self._hash(ordered.values(), structs))
+
+    def _structs_of(self, functions: Iterable[Function]) -> tuple[StructDef, ...]:
+        needed: dict[str, StructDef] = {}
+
+        def visit(type_: Type) -> None:
+            if isinstance(type_, Struct) and type_.name not in needed:
+                for field in type_.fields:
+                    visit(field.type)
+                file = self.resolver.where[type_.name]
+                needed[type_.name] = self.resolver.struct(file, type_.name)
+
+        for function in functions:
+            for parameter in function.parameters:
+                visit(parameter.type)
+            visit(function.returns)
+            for e in expressions(function.body):
+                visit(e.type)
+        return tuple(needed.values())
+
+    def _hash(self, functions: Iterable[Function], structs: Iterable[StructDef]) -> str:
+        names = [item.name for item in (*functions, *structs)]
+        files = {self.resolver.where[name].module: self.resolver.where[name] for name in names}
+        digest = hashlib.sha256()
+        for module in sorted(files):
+            digest.update(f"{module}\n{files[module].text}\n".encode())
+        return digest.hexdigest()[:16]
+
+    def _order(self, function: Function) -> tuple[int, str, str, int, int]:
+        section = SECTIONS.index(function.module) if function.module in SECTIONS else len(SECTIONS)
+        file = self.resolver.where[function.name].module
+        kinds = ("base", "helper", "variant", "printed")
+        return section, function.module, file, kinds.index(function.kind), function.place.line
+
+
+@functools.cache
+def load_library(root: Path | None = None) -> Library:
+    """The library of the installed package, or of another source folder; parsed once per process."""
+    return Library(root or default_root())

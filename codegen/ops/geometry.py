@@ -1,0 +1,70 @@
+"""Geometric built-ins on float vectors. Read this file as a table."""
+
+from codegen.ir.types import VEC3
+from codegen.ops.accuracy import Inherited, ScaledAbsolute, Ulp, promise
+from codegen.ops.op import Op
+from codegen.ops.rules import FLOAT_VECTORS, one, reduction, same
+
+SEE = "WGSL 15.7.4; Vulkan GLSL.std.450; GLSL 8.5; OpenCL C 7.4 (geometric functions)"
+
+
+def _dot(m, a, b):  # type: ignore[no-untyped-def]  # polymorphic over numpy and mpmath arrays
+    """The sum of products, first component first, every operation rounded."""
+    total = a[..., 0] * b[..., 0]
+    for k in range(1, a.shape[-1]):
+        total = total + a[..., k] * b[..., k]
+    return total
+
+
+def _cross(m, a, b):  # type: ignore[no-untyped-def]  # polymorphic over numpy and mpmath arrays
+    ax, ay, az = (a[..., k] for k in range(3))
+    bx, by, bz = (b[..., k] for k in range(3))
+    return m.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+
+
+BUILTINS = (
+    Op(
+        "dot",
+        reduction(2),
+        _dot,
+        promise(Inherited("sum of products in any order"), ScaledAbsolute(5)),
+        "multiply",
+        (((0.0, 0.6, 0.8), (1.0, 0.0, 0.0)),),
+        SEE,
+        summary="Inner product.",
+        names=("a", "b"),
+    ),
+    Op(
+        "cross",
+        one((VEC3, VEC3), VEC3),
+        _cross,
+        promise(Inherited("x[i] y[j] - x[j] y[i]"), ScaledAbsolute(3)),
+        "multiply",
+        (((0.0, 0.6, 0.8), (1.0, 0.0, 0.0)),),
+        SEE,
+        summary="Outer product; right-handed.",
+        names=("a", "b"),
+    ),
+    Op(
+        "length",
+        reduction(1),
+        lambda m, x: m.sqrt(_dot(m, x, x)),
+        promise(Inherited("sqrt(dot(x, x))"), Ulp(4.25)),
+        "root",
+        (((0.0, 0.6, 0.8),),),
+        SEE,
+        summary="Euclidean length; squares overflow above 1e19 and vanish below 1e-19.",
+        names=("x",),
+    ),
+    Op(
+        "normalize",
+        same(FLOAT_VECTORS, 1),
+        lambda m, x: x / m.sqrt(_dot(m, x, x))[..., None],
+        promise(Inherited("x / length(x)"), Ulp(5)),
+        "root",
+        (((0.0, 3.0, 4.0),),),
+        SEE,
+        summary="x / length(x); not for vectors that may be zero, see safe_normalize.",
+        names=("x",),
+    ),
+)

@@ -1,0 +1,61 @@
+"""What a row of the op registry holds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from codegen.ir.types import Type
+from codegen.ops.accuracy import Promise
+from codegen.ops.rules import Rule
+
+Meaning = Callable[..., Any]
+"""(m, *operands) -> value; m is a namespace of numpy's names: numpy itself, or codegen.evaluate.precise."""
+
+COSTS = ("free", "add", "multiply", "divide", "root", "exponential", "trigonometric")
+"""Cost classes: a coarse order for reading reports. Speed is measured, never summed from these."""
+
+
+@dataclass(frozen=True)
+class Op:
+    """One row: an operator (name is its symbol) or a built-in function.
+
+    rule      overloads: argument types -> result type
+    meaning   the value over the numbers, in terms of numpy names
+    accuracy  what each specification promises (codegen.ops.accuracy)
+    cost      one of COSTS
+    probe     legal sample arguments, one tuple per sample (vectors as tuples)
+    see       where the promise is written
+    summary   one line for editors (built-ins)
+    names     parameter names for editors (built-ins)
+    spell     spelling per target where it differs from `name`
+    """
+
+    name: str
+    rule: Rule
+    meaning: Meaning
+    accuracy: Promise
+    cost: str
+    probe: tuple[tuple[Any, ...], ...]
+    see: str
+    summary: str = ""
+    names: tuple[str, ...] = ()
+    spell: Mapping[str, str] = field(default_factory=dict)
+
+    def result(self, arguments: tuple[Type, ...]) -> Type | None:
+        """The result type for these argument types; None where no overload fits."""
+        return next((result for types, result in self.rule if types == arguments), None)
+
+    def spelling(self, target: str) -> str:
+        """The name in a target's text."""
+        return self.spell.get(target, self.name)
+
+
+def table(*rows: Op) -> dict[str, Op]:
+    """Rows by name; a name may stand once."""
+    names = [row.name for row in rows]
+    twice = {name for name in names if names.count(name) > 1}
+    if twice:
+        raise ValueError(f"rows given twice: {', '.join(sorted(twice))}")
+    return dict(zip(names, rows, strict=True))

@@ -1,0 +1,33 @@
+"""OpenCL C 1.2 and 3.0. A truth value is an int there; casts are C's."""
+
+from codegen.emit.dialect import Dialect
+
+
+def _dialect(name: str) -> Dialect:
+    return Dialect(
+        target="opencl",
+        name=name,
+        title=f"OpenCL C {name}",
+        extension="cl",
+        types={
+            "f32": "float",
+            "i32": "int",
+            "u32": "uint",
+            "bool": "int",
+            "vec2": "float2",
+            "vec3": "float3",
+            "vec4": "float4",
+            "uvec2": "uint2",
+            "uvec3": "uint3",
+        },
+        qualifier="static inline ",
+        float_suffix="f",
+        vectors="cast",
+        structs="compound",
+        conversions="cast",
+        line_map='#line {line} "{file}"',
+    )
+
+
+DIALECTS = {name: _dialect(name) for name in ("1.2", "3.0")}
+DEFAULT = "1.2"
