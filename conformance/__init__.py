@@ -1,0 +1,1 @@
+"""Conformance: references, hard cases, value tests on every driver, measured error and speed."""
