@@ -1,0 +1,1 @@
+"""Vair's single source: shading functions of hair, fur and strands in a typed subset of Python."""
