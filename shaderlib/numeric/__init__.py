@@ -1,0 +1,1 @@
+"""Scalar and vector primitives that stay finite and accurate where the obvious formula does not."""

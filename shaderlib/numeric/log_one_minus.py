@@ -1,0 +1,35 @@
+"""Logarithm of one minus a small number."""
+
+from typing import Annotated
+
+from shaderlib.constants import SMALLEST_NORMAL
+from shaderlib.lang import Interval, f32, log, max, min, variant
+from shaderlib.numeric.atanh_series import atanh_series
+
+
+def log_one_minus(q: Annotated[f32, Interval(0.0, 0.99999994, scale="log")]) -> f32:
+    """Natural logarithm of 1 - q, accurate as q -> 0.
+
+    q        in [0, 1); the largest float32 below 1 gives -16.64
+    returns  log(1 - q), at most 0, with flat relative error
+    form     -2 atanh(q / (2 - q)) below 1/2: nothing cancels. Above, 1 - q is exact and log of a value below
+             1/2 is promised relatively. log(1 - q) alone is useless below q = 1e-7, where 1 - q rounds to 1
+    source   identity log(1 - q) = -2 atanh(q / (2 - q)); series: atanh_series
+    """
+    core = min(q, 0.5)
+    z = core / (2.0 - core)
+    log_near = -2.0 * z * atanh_series(z * z)
+    log_far = log(max(1.0 - q, SMALLEST_NORMAL))
+    return log_near if q < 0.5 else log_far
+
+
+@variant("log_one_minus")
+def log_one_minus_direct(q: Annotated[f32, Interval(0.0, 0.99999994)]) -> f32:
+    """Natural logarithm of 1 - q as written: a small absolute error, no relative accuracy as q -> 0.
+
+    q        in [0, 1)
+    returns  log(1 - q)
+    form     1 - q is rounded before the logarithm sees it, and log is promised to 2^-21 absolute near 1
+    source   elementary
+    """
+    return log(max(1.0 - q, SMALLEST_NORMAL))

@@ -1,0 +1,30 @@
+"""Hermite step that is defined for every order of its edges."""
+
+from typing import Annotated
+
+from shaderlib.constants import SMALLEST_NORMAL
+from shaderlib.lang import Interval, abs, clamp, f32, max, min
+
+
+def safe_smoothstep(
+    edge0: Annotated[f32, Interval(-1.0e4, 1.0e4)],
+    edge1: Annotated[f32, Interval(-1.0e4, 1.0e4)],
+    x: Annotated[f32, Interval(-1.0e4, 1.0e4)],
+) -> f32:
+    """Smooth step from 0 at edge0 to 1 at edge1, in either order.
+
+    edge0       where the result is 0
+    edge1       where the result is 1; may lie below edge0, then the step descends
+    x           where to evaluate
+    returns     s s (3 - 2 s) with s = (x - edge0) / (edge1 - edge0) clamped to [0, 1]
+    degenerate  edges equal (closer than 1.2e-38): 0 for x below edge0, 1 at and above it
+    form        x - edge0 is clamped to the width before the division, which therefore cannot overflow. The
+                built-in is undefined for edge0 >= edge1 in GLSL and indeterminate for equal edges in WGSL
+    source      GLSL specification, smoothstep; the cases that it leaves open are decided here
+    """
+    width = edge1 - edge0
+    joined = abs(width) < SMALLEST_NORMAL
+    travelled = clamp(x - edge0, min(width, 0.0), max(width, 0.0))
+    s = travelled / (1.0 if joined else width)
+    hard = 0.0 if x < edge0 else 1.0
+    return hard if joined else s * s * (3.0 - 2.0 * s)
