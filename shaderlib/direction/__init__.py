@@ -1,0 +1,1 @@
+"""Directions: components along a line, angles between unit vectors, frames."""

@@ -1,0 +1,22 @@
+"""The frame of a combed surface."""
+
+from shaderlib.direction.frame import Frame
+from shaderlib.direction.frame_from_normal import frame_from_normal
+from shaderlib.domains import Direction
+from shaderlib.lang import cross
+from shaderlib.numeric.safe_normalize import safe_normalize_dot
+
+
+def frame_from_tangent(n: Direction, t: Direction) -> Frame:
+    """Right-handed frame with the normal n and, as far as that allows, the tangent t.
+
+    n           normal, kept as it is
+    t           wanted tangent; only its part across n counts
+    returns     frame with tangent = normalize(t - (t.n) n) and bitangent = n x tangent
+    degenerate  t = n and t = -n: frame_from_normal(n)
+    form        the bitangent first: n x t = (n - t) x (n + t) / 2 keeps its relative accuracy for t close to
+                n, where t - (t.n) n cancels; the tangent is then a product of orthogonal unit vectors
+    source      Gram-Schmidt; form derived for this library
+    """
+    bitangent = safe_normalize_dot(cross(n - t, n + t), frame_from_normal(n).bitangent)
+    return Frame(cross(bitangent, n), bitangent, n)
