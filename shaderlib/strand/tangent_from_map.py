@@ -1,0 +1,24 @@
+"""Tangent of a brushed surface from a texture."""
+
+from shaderlib.direction.frame_from_tangent import frame_from_tangent
+from shaderlib.domains import Direction, MapTangent
+from shaderlib.lang import vec3
+from shaderlib.numeric.safe_normalize import safe_normalize_dot
+
+
+def tangent_from_map(n: Direction, t: Direction, map_tangent: MapTangent) -> vec3:
+    """Per-pixel strand tangent of a brushed surface.
+
+    n            surface normal
+    t            tangent of the surface, along the first texture coordinate
+    map_tangent  texel of a tangent map, decoded to [-1, 1] per component, in the frame (T, n x T, n) with
+                 T = normalize(t - (t.n) n)
+    returns      the texel's direction in the surface, a unit vector orthogonal to n
+    degenerate   texel without x and y: T; t along n: as frame_from_tangent
+    form         Gram-Schmidt of m = x T + y B + z n against n leaves x T + y B, so z is never added and
+                 subtracted again
+    source       Isidoro and Brennan 2002, Per-Pixel Strand Based Anisotropic Lighting
+    """
+    frame = frame_from_tangent(n, t)
+    combed = map_tangent.x * frame.tangent + map_tangent.y * frame.bitangent
+    return safe_normalize_dot(combed, frame.tangent)
