@@ -1,0 +1,48 @@
+"""Targets: where the generated library runs. Each folder holds one target's dialects and its runtime.
+
+Importing this package imports no GPU package; a device is opened by open_runtime, once per process.
+"""
+
+import importlib
+from threading import Lock
+from typing import cast
+
+from targets.protocol import BuildFailed, Device, Runtime, TargetUnavailable, TimedRuntime
+
+__all__ = [
+    "TARGETS",
+    "BuildFailed",
+    "Device",
+    "Runtime",
+    "TargetUnavailable",
+    "TimedRuntime",
+    "open_runtime",
+    "probe",
+]
+
+TARGETS = ("glsl", "wgsl", "opencl")
+
+_open: dict[str, TimedRuntime] = {}
+_opening = Lock()
+
+
+def open_runtime(name: str) -> TimedRuntime:
+    """The runtime of a target, opened at the first call and shared by all later ones.
+
+    errors  TargetUnavailable names the missing driver or package; ValueError for a name not in TARGETS
+    """
+    if name not in TARGETS:
+        raise ValueError(f"no target is called {name!r}; the targets are {', '.join(TARGETS)}")
+    with _opening:
+        if name not in _open:
+            module = importlib.import_module(f"targets.{name}.runtime")
+            _open[name] = cast(TimedRuntime, module.open_runtime())
+        return _open[name]
+
+
+def probe(name: str) -> Device | TargetUnavailable:
+    """The device of a target, or the reason why there is none (returned, not raised)."""
+    try:
+        return open_runtime(name).device
+    except TargetUnavailable as reason:
+        return reason
