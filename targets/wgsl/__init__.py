@@ -1,0 +1,1 @@
+"""WGSL: runs on WebGPU through wgpu, whose naga validates it."""

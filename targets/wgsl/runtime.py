@@ -1,0 +1,180 @@
+"""Runs WGSL compute programs on WebGPU through wgpu."""
+
+import os
+import tempfile
+from importlib.metadata import version
+from threading import RLock
+from typing import Any
+
+import numpy as np
+
+from targets.lanes import CHUNK_BYTES, UNWRITTEN, check_words, group_count, run_in_chunks
+from targets.packages import first_line, require_package
+from targets.protocol import BuildFailed, Device, TargetUnavailable, Words
+
+ADAPTER_VARIABLE = "VAIR_WGPU_ADAPTER"
+MISSING_DRIVER = "no WebGPU adapter is here ({reason}): apt-get install mesa-vulkan-drivers"
+
+PREFERRED_BACKENDS = ("Vulkan", "Metal", "D3D12", "OpenGL")
+PREFERRED_KINDS = ("DiscreteGPU", "IntegratedGPU", "CPU", "Unknown")
+
+READ_ONLY, READ_WRITE, UNIFORM = "read-only-storage", "storage", "uniform"
+
+
+def open_runtime() -> "WgslRuntime":
+    """Open a device on the preferred adapter, or on the one that VAIR_WGPU_ADAPTER names.
+
+    errors  TargetUnavailable
+    """
+    # Without the variable wgpu complains twice on standard error.
+    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
+    return WgslRuntime(require_package("wgpu"))
+
+
+class WgslRuntime:
+    """WebGPU compute behind one lock."""
+
+    def __init__(self, wgpu: Any, chunk_bytes: int = CHUNK_BYTES) -> None:
+        self._wgpu = wgpu
+        self._lock = RLock()
+        self._programs: dict[str, Any] = {}
+        adapter = _choose_adapter(wgpu, os.environ.get(ADAPTER_VARIABLE, ""))
+        try:
+            self._device = adapter.request_device_sync()
+        except Exception as error:
+            raise TargetUnavailable(MISSING_DRIVER.format(reason=first_line(error))) from error
+        self.chunk_bytes = min(chunk_bytes, self._device.limits["max-storage-buffer-binding-size"])
+        self.device = _describe(adapter)
+        self._bindings = self._device.create_bind_group_layout(
+            entries=[
+                {"binding": number, "visibility": wgpu.ShaderStage.COMPUTE, "buffer": {"type": kind}}
+                for number, kind in enumerate((READ_ONLY, READ_WRITE, UNIFORM))
+            ]
+        )
+
+    def run(self, program: str, words: Words, slots_out: int) -> Words:
+        """Run a program once per lane; see targets.protocol.Runtime."""
+        return run_in_chunks(
+            lambda chunk: self.prepare(program, chunk, slots_out), words, slots_out, self.chunk_bytes
+        )
+
+    def prepare(self, program: str, words: Words, slots_out: int) -> "WgslPrepared":
+        """Build a program and upload its input; see targets.protocol.TimedRuntime."""
+        check_words(words, slots_out)
+        with self._lock:
+            pipeline = self._build(program)
+            return WgslPrepared(self, pipeline, words, slots_out)
+
+    def create_module(self, text: str) -> Any:
+        """A shader module of a valid WGSL text; raises BuildFailed with naga's report."""
+        with self._lock:
+            try:
+                return self._device.create_shader_module(code=text)
+            except (self._wgpu.GPUError, self._wgpu.GPUPipelineError) as error:
+                raise BuildFailed(str(error).strip()) from error
+
+    def _build(self, program: str) -> Any:
+        if program not in self._programs:
+            module = self.create_module(program)
+            layout = self._device.create_pipeline_layout(bind_group_layouts=[self._bindings])
+            try:
+                self._programs[program] = self._device.create_compute_pipeline(
+                    layout=layout, compute={"module": module, "entry_point": "harness_main"}
+                )
+            except (self._wgpu.GPUError, self._wgpu.GPUPipelineError) as error:
+                raise BuildFailed(str(error).strip()) from error
+        return self._programs[program]
+
+
+class WgslPrepared:
+    """A compute pipeline with its buffers."""
+
+    def __init__(self, runtime: WgslRuntime, pipeline: Any, words: Words, slots_out: int) -> None:
+        self._lock = runtime._lock
+        self._gpu = runtime._device
+        self._pipeline = pipeline
+        self._shape = (slots_out, words.shape[1])
+        # WebGPU refuses an empty buffer.
+        source = np.ascontiguousarray(words) if words.size else np.zeros(1, np.uint32)
+        blank = np.full(max(slots_out * words.shape[1], 1), UNWRITTEN, np.uint32)
+        usage = runtime._wgpu.BufferUsage
+        self._buffers = [
+            self._gpu.create_buffer_with_data(data=source, usage=usage.STORAGE),
+            self._gpu.create_buffer_with_data(data=blank, usage=usage.STORAGE | usage.COPY_SRC),
+            self._gpu.create_buffer_with_data(
+                data=np.array([words.shape[1], 0, 0, 0], np.uint32), usage=usage.UNIFORM
+            ),
+        ]
+        self._group = self._gpu.create_bind_group(
+            layout=runtime._bindings,
+            entries=[
+                {"binding": number, "resource": {"buffer": buffer, "offset": 0, "size": buffer.size}}
+                for number, buffer in enumerate(self._buffers)
+            ],
+        )
+
+    def launch(self) -> None:
+        """Run the program over all lanes and wait until it is done."""
+        lanes = self._shape[1]
+        if lanes == 0:
+            return
+        with self._lock:
+            encoder = self._gpu.create_command_encoder()
+            compute = encoder.begin_compute_pass()
+            compute.set_pipeline(self._pipeline)
+            compute.set_bind_group(0, self._group)
+            compute.dispatch_workgroups(group_count(lanes))
+            compute.end()
+            self._gpu.queue.submit([encoder.finish()])
+            # on_submitted_work_done_sync raises TypeError in wgpu 0.32; reading one word waits as well.
+            self._gpu.queue.read_buffer(self._buffers[1], 0, 4)
+
+    def read(self) -> Words:
+        """The output words, (slots_out, n)."""
+        size = 4 * self._shape[0] * self._shape[1]
+        if size == 0:
+            return np.empty(self._shape, np.uint32)
+        with self._lock:
+            data = self._gpu.queue.read_buffer(self._buffers[1], 0, size)
+        return np.frombuffer(data, np.uint32).reshape(self._shape)
+
+    def release(self) -> None:
+        """Give the device's memory back."""
+        with self._lock:
+            for buffer in self._buffers:
+                buffer.destroy()
+
+
+def _choose_adapter(wgpu: Any, wanted: str) -> Any:
+    """The adapter whose summary contains the wanted words, else the first of the preferred kind."""
+    try:
+        adapters = list(wgpu.gpu.enumerate_adapters_sync())
+    except Exception as error:
+        raise TargetUnavailable(MISSING_DRIVER.format(reason=first_line(error))) from error
+    if not adapters:
+        raise TargetUnavailable(MISSING_DRIVER.format(reason="the list of adapters is empty"))
+    fitting = [adapter for adapter in adapters if wanted.lower() in adapter.summary.lower()]
+    if not fitting:
+        names = "; ".join(adapter.summary for adapter in adapters)
+        raise TargetUnavailable(f"{ADAPTER_VARIABLE}={wanted} names no WebGPU adapter; here are: {names}")
+    return min(fitting, key=_rank)
+
+
+def _rank(adapter: Any) -> tuple[int, int]:
+    """Smaller is better."""
+    backend, kind = adapter.info["backend_type"], adapter.info["adapter_type"]
+    return _position(PREFERRED_BACKENDS, backend), _position(PREFERRED_KINDS, kind)
+
+
+def _position(order: tuple[str, ...], name: str) -> int:
+    return order.index(name) if name in order else len(order)
+
+
+def _describe(adapter: Any) -> Device:
+    info = adapter.info
+    return Device(
+        target="wgsl",
+        api=f"WebGPU (wgpu {version('wgpu')}) on {info['backend_type']}",
+        driver=info["description"] or info["vendor"] or info["backend_type"],
+        device=info["device"] or adapter.summary,
+    )
