@@ -1,0 +1,1 @@
+"""Shells and fins: fur as a stack of blended layers, with fins on the silhouette."""
