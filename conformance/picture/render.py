@@ -1,0 +1,75 @@
+"""From a scene file to a picture: `vair render` and the demonstration use this."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.errors import UserError
+from codegen.library import Library
+from conformance.picture.backends import models, open_backend
+from conformance.picture.image import write_png
+from conformance.picture.mesh import Mesh, read_mesh
+from conformance.picture.scene import Picture, Scene, read_scene
+from conformance.picture.shade import Backend, Models, Shading, bind, shade
+from conformance.picture.tone import eight_bit, gradient, resolve
+from conformance.picture.visibility import Visibility, see
+
+Doubles = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Studio:
+    """A scene made ready: everything of its picture that does not depend on the backend."""
+
+    scene: Scene
+    picture: Picture
+    shading: Shading
+    mesh: Mesh
+
+    @cached_property
+    def seen(self) -> Visibility:
+        """The visibility buffer, the same for all backends."""
+        width, height = self.picture.size
+        side = self.picture.supersample
+        return see(
+            self.mesh,
+            self.picture.camera,
+            (width * side, height * side),
+            self.picture.brush,
+            [light.direction for light in self.picture.lights],
+            self.picture.shadows,
+        )
+
+    def shade(self, backend: Backend) -> Doubles:
+        """Linear light (N, 3) of the covered samples."""
+        return shade(backend, self.shading, self.seen, self.picture.lights)
+
+    def develop(self, shaded: Doubles) -> Doubles:
+        """The picture (height, width, 3) in linear light, over the background."""
+        background = gradient(self.picture.size, self.picture.top, self.picture.bottom)
+        return resolve(self.seen.mask, shaded, background)
+
+
+def set_up(path: Path, available: Models) -> Studio:
+    """Read and check a scene file, and its mesh; `available` are the functions that can shade."""
+    scene = read_scene(path)
+    if scene.picture is None:
+        raise UserError(f"{path}: has no [render] table, which a picture needs")
+    shading = bind(scene, available)
+    return Studio(scene, scene.picture, shading, read_mesh(scene.picture.mesh, scene.picture.subdivide))
+
+
+def render(library: Library, scene: Path, target: str | None, output: Path) -> Backend:
+    """Shade a scene on a target (the scene's first one if None), write the PNG, return who shaded it.
+
+    errors  UserError for a fault in the scene, the mesh or the output, and without a driver
+    """
+    studio = set_up(scene, models(library))
+    backend = open_backend(target or studio.scene.targets[0], library)
+    write_png(output, eight_bit(studio.develop(studio.shade(backend))))
+    return backend

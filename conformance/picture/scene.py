@@ -1,0 +1,203 @@
+"""Scene files: what is shaded, with which parameters, and what a picture of it needs.
+
+The tables [scene], [shade], [parameters], [view] and [lights] say what is known of a scene; [render]
+adds what only a picture needs: a mesh, a camera, lights, how the surface is brushed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from codegen.errors import UserError, nearest
+from conformance.picture.brush import Brush
+from conformance.picture.tables import Table, is_number, read_tables, show
+from conformance.picture.visibility import Camera
+
+TABLES = ("scene", "shade", "parameters", "view", "lights", "render")
+TARGETS = ("glsl", "wgsl", "opencl")
+BUDGETS = ("half-step-8bit",)
+
+Triple = tuple[float, float, float]
+Value = float | tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Range:
+    """A parameter that varies; a picture shows the middle of the range."""
+
+    low: float
+    high: float
+
+    @property
+    def middle(self) -> float:
+        return 0.5 * (self.low + self.high)
+
+
+@dataclass(frozen=True)
+class Light:
+    """A directional light: the direction to it (any length) and its colour in linear light."""
+
+    direction: Triple
+    colour: Triple
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What only a picture needs; sizes in pixels, lengths in units of the mesh, colours of the
+    background in sRGB."""
+
+    mesh: Path
+    size: tuple[int, int]
+    supersample: int
+    subdivide: int
+    shadows: bool
+    top: Triple
+    bottom: Triple
+    camera: Camera
+    brush: Brush
+    lights: tuple[Light, ...]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A scene file that has been read and checked, except for the names that the library decides.
+
+    budget       largest permitted error: a name of BUDGETS or the error itself; None where none is set
+    parameters   by the function's own names, dotted for struct fields
+    min_n_dot_v  least n.v that occurs
+    lights       how many directional lights there are
+    picture      None without a [render] table
+    """
+
+    path: Path
+    name: str
+    targets: tuple[str, ...]
+    budget: str | float | None
+    model: str
+    parameters: dict[str, Value | Range]
+    min_n_dot_v: float
+    lights: int
+    picture: Picture | None = field(default=None)
+
+
+def read_scene(path: Path) -> Scene:
+    """Read a scene file; paths in it are relative to its own folder."""
+    tables = read_tables(path, TABLES)
+    scene, shade, view, lights = (tables[name] for name in ("scene", "shade", "view", "lights"))
+    picture = _picture(tables["render"]) if tables["render"].content else None
+    result = Scene(
+        path=path,
+        name=scene.text("name", path.stem),
+        targets=_targets(scene),
+        budget=_budget(scene),
+        model=shade.text("model"),
+        parameters={key: _parameter(tables["parameters"], key) for key in tables["parameters"].content},
+        min_n_dot_v=view.number("min_n_dot_v", -1.0, 1.0, -1.0),
+        lights=_lights(lights, picture),
+        picture=picture,
+    )
+    for table in (scene, shade, view, lights):
+        table.close()
+    return result
+
+
+def _targets(scene: Table) -> tuple[str, ...]:
+    value = scene.value("targets", TARGETS)
+    if not isinstance(value, list | tuple) or not value or not all(isinstance(t, str) for t in value):
+        raise scene.error("targets", f'must be an array of targets, as ["glsl", "wgsl"], not {show(value)}')
+    for target in value:
+        if target not in TARGETS:
+            raise scene.error("targets", f'unknown target "{target}"{nearest(target, TARGETS)}')
+    return tuple(value)
+
+
+def _budget(scene: Table) -> str | float | None:
+    if "budget" not in scene:
+        return None
+    value = scene.value("budget")
+    if isinstance(value, str) and value not in BUDGETS:
+        raise scene.error("budget", f'unknown budget "{value}"{nearest(value, BUDGETS)}, or a number')
+    return value if isinstance(value, str) else scene.number("budget", 0.0, 1e6)
+
+
+def _parameter(table: Table, key: str) -> Value | Range:
+    value: Any = table.value(key)
+    if isinstance(value, dict):
+        bounds = Table(table.path, f'{table.name}."{key}"', value)
+        low, high = bounds.number("min", -1e38, 1e38), bounds.number("max", -1e38, 1e38)
+        bounds.close()
+        if low > high:
+            raise table.error(f'"{key}"', f"min = {low:g} is above max = {high:g}")
+        return Range(low, high)
+    if is_number(value):
+        return float(value)
+    if isinstance(value, list) and 2 <= len(value) <= 4 and all(map(is_number, value)):
+        return tuple(float(x) for x in value)
+    raise table.error(
+        f'"{key}"',
+        f"must be a number, a vector of numbers or a range {{ min = ..., max = ... }}, not {show(value)}",
+    )
+
+
+def _lights(table: Table, picture: Picture | None) -> int:
+    """The number of directional lights; what a picture cannot show is refused where there is one."""
+    directional = table.integer("directional", 0, 64, len(picture.lights) if picture else 0)
+    point = table.integer("point", 0, 64, 0)
+    environment = table.text("environment", "none")
+    if picture is None:
+        return directional
+    if directional != len(picture.lights):
+        raise table.error(
+            "directional", f"is {directional}, but [[render.light]] lists {len(picture.lights)}"
+        )
+    if point or environment != "none":
+        key = "point" if point else "environment"
+        raise table.error(key, "a picture is lit by directional lights only, listed as [[render.light]]")
+    return directional
+
+
+def _picture(render: Table) -> Picture:
+    camera, brush, background = (render.table(name) for name in ("camera", "brush", "background"))
+    lights = render.tables("light")
+    if not lights:
+        raise UserError(f"{render.path}: [[render.light]] is missing: a picture needs a light")
+    picture = Picture(
+        mesh=render.path.parent / render.text("mesh"),
+        size=_size(render),
+        supersample=render.integer("supersample", 1, 8, 2),
+        subdivide=render.integer("subdivide", 0, 4, 0),
+        shadows=render.flag("shadows", True),
+        top=background.triple("top", (0.0, 0.0, 0.0)),
+        bottom=background.triple("bottom", (0.0, 0.0, 0.0)),
+        camera=_camera(camera),
+        brush=Brush(
+            axis=brush.direction("axis", (0.0, 1.0, 0.0)),
+            amplitude=brush.number("amplitude", 0.0, 1.5, 0.0),
+            frequency=brush.number("frequency", 0.0, 1e4, 10.0),
+            length=brush.number("length", 1.0, 1e4, 40.0),
+        ),
+        lights=tuple(Light(t.direction("direction"), t.triple("colour", (1.0, 1.0, 1.0))) for t in lights),
+    )
+    for table in (render, camera, brush, background, *lights):
+        table.close()
+    return picture
+
+
+def _size(render: Table) -> tuple[int, int]:
+    value = render.value("size", [768, 768])
+    whole = isinstance(value, list) and len(value) == 2 and all(type(x) is int for x in value)
+    if not whole or not all(1 <= x <= 4096 for x in value):
+        raise render.error("size", f"must be [width, height] from 1 to 4096 pixels, not {show(value)}")
+    return value[0], value[1]
+
+
+def _camera(table: Table) -> Camera:
+    eye, target, up = table.triple("eye"), table.triple("target"), table.direction("up", (0.0, 1.0, 0.0))
+    forward = [b - a for a, b in zip(eye, target, strict=True)]
+    if not any(forward):
+        raise table.error("target", "is where the eye is")
+    if not any(forward[i - 2] * up[i - 1] - forward[i - 1] * up[i - 2] for i in range(3)):
+        raise table.error("up", "points along the view")
+    return Camera(eye, target, up, table.number("field_of_view", 0.1, 170.0, 30.0))
