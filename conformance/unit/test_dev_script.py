@@ -1,0 +1,138 @@
+"""The script ./dev: what it says when something is not there.
+
+Plan. The script runs in a copy of its own folder (with a space in its name) and with a PATH that holds
+only the programs named, so nothing is installed and nothing outside the copy is touched:
+  syntax            bash accepts it
+  usage             ./dev alone names every command; an unknown command is refused
+  no apt            the missing drivers are listed by what they are for
+  no Python         says which version is needed
+  a foreign .venv   is never removed
+  no package index  is told apart from a broken pin, and leaves an unfinished .venv that is rebuilt
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+# What the script calls besides Python; all of it is on every system with bash.
+BASICS = ["bash", "cat", "dirname", "env", "flock", "grep", "id", "mkdir", "mktemp", "mv", "rm", "tail"]
+COMMANDS = ["setup", "demo", "test", "bench", "lint", "gen", "check-generated", "lock"]
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """A folder that holds what ./dev reads, and a bin/ with the basic programs."""
+    folder = tmp_path / "a check out"
+    (folder / ".ci").mkdir(parents=True)
+    (folder / "bin").mkdir()
+    for name in ["dev", "pyproject.toml", ".ci/requirements.txt"]:
+        shutil.copy(ROOT / name, folder / name)
+    for name in BASICS:
+        program = shutil.which(name)
+        if program is not None:
+            (folder / "bin" / name).symlink_to(program)
+    return folder
+
+
+def dev(folder: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Runs the copy of ./dev from another folder, seeing only the programs in bin/."""
+    clean = {"PATH": str(folder / "bin"), "TMPDIR": str(folder.parent), "HOME": str(folder.parent)}
+    return subprocess.run(
+        ["bash", str(folder / "dev"), *arguments],
+        cwd=folder.parent,
+        env=clean | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
+
+
+def provide_python(folder: Path) -> None:
+    """The interpreter behind the running .venv, so that the script can make a .venv from it."""
+    real = Path(sys.base_prefix) / "bin" / f"python{sys.version_info.major}.{sys.version_info.minor}"
+    (folder / "bin" / "python3").symlink_to(real)
+
+
+@pytest.mark.parametrize("name", ["dev", ".ci/run"])
+def test_bash_accepts_the_script(name: str) -> None:
+    done = subprocess.run(["bash", "-n", str(ROOT / name)], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_alone_it_says_what_it_can_do(checkout: Path) -> None:
+    done = dev(checkout)
+    assert (done.returncode, done.stderr) == (0, "")
+    for command in COMMANDS:
+        assert f"\n  {command} " in done.stdout
+
+
+def test_an_unknown_command_is_refused(checkout: Path) -> None:
+    done = dev(checkout, "tset")
+    assert done.returncode == 2
+    assert done.stderr == "dev: there is no command 'tset'; ./dev alone says what it can do.\n"
+
+
+def test_without_python_it_names_the_version(checkout: Path) -> None:
+    done = dev(checkout, "setup")
+    assert done.returncode == 2
+    assert "Python 3.11 or newer is needed and none was found" in done.stderr
+
+
+def test_without_apt_it_names_the_missing_drivers(checkout: Path) -> None:
+    provide_python(checkout)
+    done = dev(checkout, "setup")
+    assert done.returncode == 2
+    assert "this system has no apt" in done.stderr
+    assert "glslangValidator, which checks every GLSL dialect" in done.stderr
+    assert "VAIR_SYSTEM=skip" in done.stderr
+    assert not (checkout / ".venv").exists()
+
+
+def test_a_foreign_venv_is_left_alone(checkout: Path) -> None:
+    provide_python(checkout)
+    (checkout / ".venv").mkdir()
+    (checkout / ".venv" / "mine").touch()
+    done = dev(checkout, "setup", VAIR_SYSTEM="skip")
+    assert done.returncode == 2
+    assert "a .venv here that ./dev did not make" in done.stderr
+    assert (checkout / ".venv" / "mine").exists()
+
+
+def test_an_unreachable_index_is_said_and_an_unfinished_venv_rebuilt(checkout: Path) -> None:
+    provide_python(checkout)
+    (checkout / ".venv").mkdir()
+    (checkout / ".venv" / "vair.setup").write_text("unfinished\n")
+    (checkout / ".venv" / "half").touch()
+    # Port 1 of this machine refuses every connection, as a cut network would.
+    dead = {
+        "PIP_PROXY": "http://127.0.0.1:1",
+        "PIP_RETRIES": "0",
+        "PIP_NO_CACHE_DIR": "1",
+        "PIP_NO_INDEX": "0",
+    }
+    done = dev(checkout, "setup", VAIR_SYSTEM="skip", **dead)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert "pip got no answer from its package index" in done.stderr
+    assert not (checkout / ".venv" / "half").exists()
+    assert (checkout / ".venv" / "vair.setup").read_text() == "unfinished\n"
+
+
+def test_it_is_quick_and_offline_once_set_up() -> None:
+    """The key of the running .venv is current, so nothing is installed again."""
+    if not os.access(ROOT / ".venv" / "vair.setup", os.R_OK):
+        pytest.skip("the tests do not run from a .venv that ./dev made")
+    done = subprocess.run(
+        ["bash", str(ROOT / "dev"), "setup"],
+        env=os.environ | {"VAIR_SYSTEM": "skip", "PIP_PROXY": "http://127.0.0.1:1"},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "Ready: .venv/bin/vair\n", "")
