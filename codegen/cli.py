@@ -1,0 +1,87 @@
+"""The command `vair`: one subcommand per file, loaded when it is used.
+
+Exit status: 0 good, 1 a check failed, 2 bad usage or input. Errors are one sentence on standard error.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+
+import click
+
+from codegen.errors import UserError, nearest
+from codegen.library import VERSION
+
+COMMANDS = {
+    "list": "codegen.commands.list:command",
+    "show": "codegen.commands.show:command",
+    "emit": "codegen.commands.emit:command",
+    "doctor": "codegen.commands.doctor:command",
+    "check": "conformance.commands.check:command",
+    "render": "conformance.commands.render:command",
+}
+"""Subcommand -> where it lives; what runs on devices lives in conformance and is loaded by name."""
+
+
+class LazyGroup(click.Group):
+    """A group that imports a subcommand only when it is asked for, so that emission starts quickly."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        module, attribute = COMMANDS[cmd_name].split(":")
+        found: click.Command = getattr(importlib.import_module(module), attribute)
+        return found
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if args and args[0] not in COMMANDS and not args[0].startswith("-"):
+            raise UserError(f'unknown command "{args[0]}"{nearest(args[0], COMMANDS)}')
+        return super().resolve_command(ctx, args)
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(VERSION, prog_name="vair")
+def vair() -> None:
+    """Hair, fur and strand shading functions for GLSL, WGSL and OpenCL C, with known error."""
+
+
+def main() -> None:
+    """Run the command line and exit."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: list[str]) -> int:
+    """Run the command line; returns the exit status."""
+    try:
+        status = vair.main(args=arguments, prog_name="vair", standalone_mode=False)
+        sys.stdout.flush()
+    except UserError as e:
+        return _refuse(str(e))
+    except click.exceptions.NoArgsIsHelpError as e:
+        click.echo(e.format_message(), err=True)
+        return 2
+    except click.ClickException as e:
+        return _refuse(" ".join(e.format_message().split()))
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("vair: interrupted", err=True)
+        return 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    return status if isinstance(status, int) else 0
+
+
+def _refuse(sentence: str) -> int:
+    click.echo(f"vair: {sentence}", err=True)
+    return 2
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,29 @@
+"""`vair emit`: one self-contained include."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from codegen.backends import dialect
+from codegen.emit.module import DEFAULT_PREFIX, emit
+from codegen.files import write_text
+from codegen.library import load_library
+
+
+@click.command("emit")
+@click.option("--target", required=True, help="glsl, wgsl or opencl.")
+@click.option("--dialect", "dialect_name", help="A dialect of the target; its default if none.")
+@click.option("--function", "functions", multiple=True, help="Emit this function with what it needs; repeatable.")
+@click.option("--prefix", default=DEFAULT_PREFIX, show_default=True, help="Put before every name.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write this file instead of printing.")
+def command(
+    target: str, dialect_name: str | None, functions: tuple[str, ...], prefix: str, output: Path | None
+) -> None:
+    """Emit one self-contained include; all functions if none is named."""
+    text = emit(load_library(), dialect(target, dialect_name), list(functions) or None, prefix)
+    if output is None:
+        click.echo(text, nl=False)
+    else:
+        write_text(output, text)

@@ -1,0 +1,49 @@
+"""Regenerates every generated file of the repository: `python -m codegen.generate`.
+
+Prints the files that changed. CI runs it and fails if anything did.
+"""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+from codegen.backends import TARGETS, dialects_of
+from codegen.emit.dialect import Dialect
+from codegen.emit.module import emit
+from codegen.library import default_root, load_library
+from codegen.ops.stub import generate as lang_stub
+from codegen.readme import with_generated_parts
+
+
+def include_name(d: Dialect) -> str:
+    """The file name of a dialect's include: vair-430.glsl, vair-1.2.cl, vair.wgsl."""
+    return f"vair.{d.extension}" if d.name == d.target else f"vair-{d.name}.{d.extension}"
+
+
+def generated_files() -> dict[Path, str]:
+    """Every generated file with the text it should have. Reading the sources needs no generated file."""
+    root = default_root().parent
+    library = load_library()
+    files = {root / "shaderlib" / "lang.py": lang_stub()}
+    for target in TARGETS:
+        folder = Path(str(importlib.import_module(f"targets.{target}").__file__)).parent / "include"
+        for d in dialects_of(target).values():
+            files[folder / include_name(d)] = emit(library, d)
+    readme = root / "README.md"
+    if readme.exists():
+        files[readme] = with_generated_parts(readme.read_text(encoding="utf-8"), library)
+    return files
+
+
+def main() -> None:
+    """Write what differs."""
+    for path, text in generated_files().items():
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+            print(f"regenerated {path.relative_to(default_root().parent)}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,59 @@
+"""Features that a bound's domain speaks of: a scalar input, a struct field, angle(x, y), dot(x, y), length(x)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.bounds import Bound
+from codegen.errors import UserError, nearest
+
+Array = npt.NDArray[Any]
+_CALL = re.compile(r"^(angle|dot|length)\(([\w.]+)(?:, *([\w.]+))?\)$")
+
+
+def lookup(inputs: Mapping[str, Any], path: str) -> Array:
+    """An input or a struct field by its dotted path, in float64."""
+    value: Any = inputs
+    for part in path.split("."):
+        if not isinstance(value, Mapping) or part not in value:
+            valid = value if isinstance(value, Mapping) else ()
+            raise UserError(f'a bound speaks of an unknown input "{path}"{nearest(part, valid)}')
+        value = value[part]
+    return np.asarray(value, np.float64)
+
+
+def _unit(x: Array) -> Array:
+    largest = np.maximum(np.abs(x).max(axis=-1, keepdims=True), 1e-300)
+    x = x / largest
+    return x / np.maximum(np.linalg.norm(x, axis=-1, keepdims=True), 1e-300)
+
+
+def feature(inputs: Mapping[str, Any], text: str) -> Array:
+    """The feature's value per lane. angle(x, y) is the angle between x and the line of y, in [0, pi/2]."""
+    call = _CALL.match(text)
+    if call is None:
+        return lookup(inputs, text)
+    kind, first, second = call.groups()
+    a = lookup(inputs, first)
+    if kind == "length":
+        return np.linalg.norm(a, axis=-1)
+    b = lookup(inputs, second)
+    if kind == "dot":
+        return np.sum(a * b, axis=-1)
+    a, b = _unit(a), _unit(b)
+    sine = np.linalg.norm(np.cross(a - b, a + b), axis=-1) / 2.0
+    return np.arctan2(sine, np.abs(np.sum(a * b, axis=-1)))
+
+
+def applies(bound: Bound, inputs: Mapping[str, Any], count: int) -> npt.NDArray[np.bool_]:
+    """Mask of the lanes inside the bound's domain."""
+    mask = np.ones(count, np.bool_)
+    for text, (low, high) in bound.where.items():
+        value = feature(inputs, text)
+        mask &= (value >= low) & (value <= high)
+    return mask

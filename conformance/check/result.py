@@ -1,0 +1,88 @@
+"""What a check finds: per bound the measured error, and failures that say everything needed to replay them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from conformance.check.identity import Identity
+
+
+@dataclass(frozen=True)
+class Failure:
+    """One lane that missed a bound, or gave a non-finite result."""
+
+    identity: Identity
+    driver: str
+    reason: str
+    inputs: str
+    got: str
+    expected: str
+    error: str
+    bound: str
+    origin: str
+
+    def lines(self) -> list[str]:
+        """The failure as lines of text; the last one replays it."""
+        return [
+            f"{self.identity.function} on {self.driver}: {self.reason}",
+            f"  inputs    {self.inputs}",
+            f"  got       {self.got}",
+            f"  expected  {self.expected}",
+            f"  error     {self.error}",
+            f"  bound     {self.bound}",
+            f"  origin    {self.origin}",
+            f"  replay    vair check --replay {self.identity}",
+        ]
+
+
+@dataclass
+class BoundResult:
+    """One declared bound against everything that was drawn inside its domain."""
+
+    bound: str
+    limit: float
+    measured: float = 0.0
+    p999: float = 0.0
+    median: float = 0.0
+    worst: str = ""
+    lanes: int = 0
+    failures: int = 0
+
+
+@dataclass
+class FunctionResult:
+    """One function on one target."""
+
+    function: str
+    target: str
+    driver: str
+    lanes: int = 0
+    non_finite: int = 0
+    ambiguous: int = 0
+    uncovered: int = 0
+    seconds: float = 0.0
+    bounds: list[BoundResult] = field(default_factory=list)
+    failures: list[Failure] = field(default_factory=list)
+    broken: str = ""
+
+    @property
+    def passed(self) -> bool:
+        return not self.failures and not self.broken
+
+    def as_data(self) -> dict[str, Any]:
+        """Plain data for the JSON result."""
+        return {
+            "function": self.function,
+            "target": self.target,
+            "driver": self.driver,
+            "passed": self.passed,
+            "broken": self.broken or None,
+            "lanes": self.lanes,
+            "non_finite": self.non_finite,
+            "ambiguous": self.ambiguous,
+            "outside_every_bound": self.uncovered,
+            "seconds": round(self.seconds, 3),
+            "bounds": [vars(b) for b in self.bounds],
+            "failures": [{**vars(f), "identity": str(f.identity)} for f in self.failures],
+        }

@@ -1,0 +1,1 @@
+"""Subcommands that run on devices; the command line loads them by name."""
