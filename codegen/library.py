@@ -56,16 +56,21 @@ class Library:
 
     def function(self, name: str) -> Function:
         """One function; raises UserError with the nearest name if there is none."""
-        if name not in self.resolver.where or name not in self.resolver.where[name].functions:
+        if name not in self.resolver.function_names():
             raise unknown("function", name, self.public)
         return self.resolver.function(name)
 
     @functools.cached_property
     def structs(self) -> dict[str, StructDef]:
         """Every struct by name."""
-        return {
-            name: self.resolver.struct(f, name) for f in self.resolver.files.values() for name in f.structs
-        }
+        return {name: self.struct(name) for name in self.resolver.struct_names()}
+
+    def struct(self, name: str) -> StructDef:
+        """One struct; raises UserError if there is none."""
+        file = self.resolver.where(name)
+        if file is None or name not in file.structs:
+            raise unknown("struct", name, self.resolver.struct_names())
+        return self.resolver.struct(file, name)
 
     def variants(self, name: str) -> list[Function]:
         """Variants and printed forms of a function."""
@@ -82,7 +87,7 @@ class Library:
             except tomllib.TOMLDecodeError as e:
                 raise UserError(f"{shown}: not valid TOML: {e}") from None
             for name, entries in read_bounds(shown, data).items():
-                if name not in self.resolver.where:
+                if not self.resolver.module_of(name):
                     raise unknown(f"function in {shown}", name, self.resolver.function_names())
                 bounds.setdefault(name, []).extend(entries)
         return bounds
@@ -111,8 +116,7 @@ class Library:
             if isinstance(type_, Struct) and type_.name not in needed:
                 for field in type_.fields:
                     visit(field.type)
-                file = self.resolver.where[type_.name]
-                needed[type_.name] = self.resolver.struct(file, type_.name)
+                needed[type_.name] = self.struct(type_.name)
 
         for function in functions:
             for parameter in function.parameters:
@@ -124,7 +128,7 @@ class Library:
 
     def _hash(self, functions: Iterable[Function], structs: Iterable[StructDef]) -> str:
         names = [item.name for item in (*functions, *structs)]
-        files = {self.resolver.where[name].module: self.resolver.where[name] for name in names}
+        files = {(m := self.resolver.module_of(name)): self.resolver.file(m) for name in names}
         digest = hashlib.sha256()
         for module in sorted(files):
             digest.update(f"{module}\n{files[module].text}\n".encode())
@@ -132,7 +136,7 @@ class Library:
 
     def _order(self, function: Function) -> tuple[int, str, str, int, int]:
         section = SECTIONS.index(function.module) if function.module in SECTIONS else len(SECTIONS)
-        file = self.resolver.where[function.name].module
+        file = self.resolver.module_of(function.name)
         kinds = ("base", "helper", "variant", "printed")
         return section, function.module, file, kinds.index(function.kind), function.place.line
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
-from importlib import resources
+from pathlib import Path
 
 from codegen.errors import Place, SourceError, UserError
 
@@ -24,7 +24,7 @@ LANGUAGE_NAMES = {
 @functools.cache
 def reserved() -> dict[str, str]:
     """Reserved word -> where it is reserved, for instance "a keyword of OpenCL C"."""
-    lists = json.loads(resources.files("codegen").joinpath("data/reserved-words.json").read_text("utf-8"))
+    lists = json.loads((Path(__file__).parent / "data" / "reserved-words.json").read_text("utf-8"))
     found: dict[str, list[str]] = {}
     for language, kinds in lists.items():
         for kind, entry in kinds.items():

@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from targets.protocol import Prepared, Words
+from targets.protocol import Prepared
+from targets.words import Words
 
 GROUP_LANES = 64
 """Lanes in a work group; the harness of every target is written for it."""

@@ -1,13 +1,12 @@
 """What a target's device side looks like from outside: text and 32-bit words in, 32-bit words out."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol
 
-import numpy as np
-import numpy.typing as npt
-
-Words: TypeAlias = npt.NDArray[np.uint32]
-"""An array (slots, lanes): row k holds the k-th 32-bit word of every lane, whatever its type."""
+if TYPE_CHECKING:  # the generator imports this package for its dialects and must not pay for numpy
+    from targets.words import Words
 
 
 @dataclass(frozen=True)

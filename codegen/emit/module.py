@@ -40,7 +40,7 @@ def emit(
 def emit_selection(library: Library, dialect: Dialect, selection: Selection, prefix: str) -> list[str]:
     """The definitions alone, with their comments."""
     printer = StmtPrinter(dialect)
-    public_names = [*library.resolver.where]
+    public_names = library.resolver.names
     rename = comment.renamer(public_names, prefix)
     unit = run_passes(selection, prefix)
     blocks: list[list[str]] = []

@@ -184,7 +184,7 @@ class ExpressionLowering:
                 return self._builtin(node, original)
         importable = [*BUILTINS, *VALUE_TYPES, *self.resolver.function_names()]
         if name in importable:
-            source = LANG if name in BUILTINS or name in VALUE_TYPES else self.resolver.where[name].module
+            source = LANG if name in BUILTINS or name in VALUE_TYPES else self.resolver.module_of(name)
             self.fail(node, f'"{name}" is not imported: from {source} import {name}')
         self.fail(node, f'unknown function "{name}"{nearest(name, importable)}')
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 from codegen import names
@@ -13,7 +14,7 @@ from codegen.ir.domains import Domain
 from codegen.ir.nodes import Doc, Function, Parameter, StructDef, callees
 from codegen.ir.types import Field, Struct, Type
 
-KINDS = ("variant", "printed", "helper")
+_DEFINITION = re.compile(r"^(def|class) (\w+)", re.MULTILINE)
 
 
 class Resolver:
@@ -23,7 +24,10 @@ class Resolver:
         """`root` is the folder of the package shaderlib; raises UserError where there is none."""
         if not root.is_dir():
             raise UserError(f'no shader sources: "{root}" is not a folder')
-        self.files: dict[str, SourceFile] = {}
+        self._paths: dict[str, tuple[Path, str]] = {}
+        self._files: dict[str, SourceFile] = {}
+        self._defined: dict[str, str] = {}
+        self._function_names: list[str] = []
         self._functions: dict[str, Function] = {}
         self._structs: dict[str, StructDef] = {}
         self._lowering: list[str] = []
@@ -32,14 +36,42 @@ class Resolver:
             if path.name in ("lang.py", "__init__.py"):
                 continue
             module = ".".join((ROOT_PACKAGE, *relative.with_suffix("").parts))
-            self.files[module] = parse_file(path, module, f"{ROOT_PACKAGE}/{relative.as_posix()}")
-        self.where: dict[str, SourceFile] = {}
-        for file in self.files.values():
-            for name, node in [*file.functions.items(), *file.structs.items()]:
-                if name in self.where:
-                    other = self.where[name].shown_path
-                    raise file.error(node, f'"{name}" is already defined in {other}')
-                self.where[name] = file
+            self._paths[module] = path, f"{ROOT_PACKAGE}/{relative.as_posix()}"
+            self._scan(module)
+
+    def _scan(self, module: str) -> None:
+        """Note what a file defines without parsing it: one function of many needs few of the files."""
+        path, shown = self._paths[module]
+        for found in _DEFINITION.finditer(path.read_text(encoding="utf-8")):
+            name = found.group(2)
+            if name in self._defined and self._defined[name] != module:
+                other = self._paths[self._defined[name]][1]
+                line = found.string.count("\n", 0, found.start()) + 1
+                raise SourceError(Place(shown, line), f'"{name}" is already defined in {other}')
+            self._defined[name] = module
+            if found.group(1) == "def":
+                self._function_names.append(name)
+
+    def file(self, module: str) -> SourceFile:
+        """The parsed file of a module."""
+        if module not in self._files:
+            path, shown = self._paths[module]
+            self._files[module] = parse_file(path, module, shown)
+        return self._files[module]
+
+    def where(self, name: str) -> SourceFile | None:
+        """The file that defines a function or struct; None for an unknown name."""
+        module = self._defined.get(name)
+        return None if module is None else self.file(module)
+
+    def module_of(self, name: str) -> str:
+        """The module that defines a function or struct; empty for an unknown name."""
+        return self._defined.get(name, "")
+
+    @property
+    def names(self) -> list[str]:
+        """Every function and struct of the sources."""
+        return list(self._defined)
 
     def find(self, file: SourceFile, name: str) -> tuple[SourceFile, str] | None:
         """The file that defines `name` as seen in `file`, and its name there; None for built-in names."""
@@ -47,11 +79,10 @@ class Resolver:
             module, original = file.imports[name]
             if module == LANG:
                 return None
-            found = self.files.get(module)
-            if found is None:
-                raise SourceError(
-                    Place(file.shown_path, 1), f'no source "{module}" to import{nearest(module, self.files)}'
-                )
+            if module not in self._paths:
+                sentence = f'no source "{module}" to import{nearest(module, self._paths)}'
+                raise SourceError(Place(file.shown_path, 1), sentence)
+            found = self.file(module)
             if original in found.imports:
                 return self.find(found, original)
             defined = [*found.values, *found.structs, *found.functions]
@@ -106,7 +137,7 @@ class Resolver:
         """The IR of a function; raises UserError for an unknown name, SourceError for a bad source."""
         if name in self._functions:
             return self._functions[name]
-        file = self.where.get(name)
+        file = self.where(name)
         if file is None or name not in file.functions:
             raise unknown("function", name, self.function_names())
         node = file.functions[name]
@@ -125,7 +156,12 @@ class Resolver:
 
     def function_names(self) -> list[str]:
         """Every function of the sources."""
-        return [name for file in self.files.values() for name in file.functions]
+        return list(self._function_names)
+
+    def struct_names(self) -> list[str]:
+        """Every struct of the sources."""
+        functions = set(self._function_names)
+        return [name for name in self._defined if name not in functions]
 
     def signature(self, file: SourceFile, node: ast.FunctionDef) -> tuple[tuple[Parameter, ...], Type]:
         """Parameters and result type of a function, from its annotations alone."""
@@ -151,7 +187,7 @@ class Resolver:
                     func=ast.Name(id=("variant" | "printed") as kind),
                     args=[ast.Constant(value=str() as base)],
                 ):
-                    if base not in self.where:
+                    if base not in self._defined:
                         raise file.error(
                             decorator, f'unknown base "{base}"{nearest(base, self.function_names())}'
                         )

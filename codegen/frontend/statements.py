@@ -113,7 +113,7 @@ class StatementLowering:
             return ir.Assign(name, e, node.lineno)
         if isinstance(node, ast.AugAssign):
             raise self.file.error(node, f'unknown name "{name}"{nearest(name, self.scope)}')
-        if name in self.resolver.where or self.resolver.find(self.file, name) or name in self.file.imports:
+        if self.resolver.where(name) or self.resolver.find(self.file, name) or name in self.file.imports:
             raise self.file.error(node, f'"{name}" already names something else in this file or the library')
         names.check(name, "local", self.file.place(node))
         self.scope[name] = e.type

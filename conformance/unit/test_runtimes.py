@@ -12,7 +12,7 @@ import pytest
 from targets import TARGETS, BuildFailed, TargetUnavailable, TimedRuntime, open_runtime
 from targets.harness import complete_program
 from targets.lanes import GROUP_LANES, MAX_GROUPS, UNWRITTEN, chunk_lanes
-from targets.protocol import Words
+from targets.words import Words
 
 COPY = "    store_u32(0, load_u32(0));\n"
 SQUARE_ROOT = "    store_f32(0, sqrt(load_f32(0)));\n"

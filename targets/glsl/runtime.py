@@ -8,7 +8,8 @@ import numpy as np
 
 from targets.lanes import CHUNK_BYTES, UNWRITTEN, check_words, group_count, run_in_chunks
 from targets.packages import first_line, require_package
-from targets.protocol import BuildFailed, Device, TargetUnavailable, Words
+from targets.protocol import BuildFailed, Device, TargetUnavailable
+from targets.words import Words
 
 REQUIRED_VERSION = 430
 MISSING_DRIVER = "no OpenGL 4.3 driver answers through EGL ({reason}): apt-get install libegl1 libgl1"

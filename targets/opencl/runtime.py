@@ -12,7 +12,8 @@ import numpy as np
 
 from targets.lanes import CHUNK_BYTES, GROUP_LANES, UNWRITTEN, check_words, group_count, run_in_chunks
 from targets.packages import first_line, require_package
-from targets.protocol import BuildFailed, Device, TargetUnavailable, Words
+from targets.protocol import BuildFailed, Device, TargetUnavailable
+from targets.words import Words
 
 DEVICE_VARIABLE = "VAIR_OPENCL_DEVICE"
 PREFERRED_PLATFORM = "Portable Computing Language"

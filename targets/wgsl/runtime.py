@@ -10,7 +10,8 @@ import numpy as np
 
 from targets.lanes import CHUNK_BYTES, UNWRITTEN, check_words, group_count, run_in_chunks
 from targets.packages import first_line, require_package
-from targets.protocol import BuildFailed, Device, TargetUnavailable, Words
+from targets.protocol import BuildFailed, Device, TargetUnavailable
+from targets.words import Words
 
 ADAPTER_VARIABLE = "VAIR_WGPU_ADAPTER"
 MISSING_DRIVER = "no WebGPU adapter is here ({reason}): apt-get install mesa-vulkan-drivers"
