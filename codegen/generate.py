@@ -5,7 +5,6 @@ Prints the files that changed. CI runs it and fails if anything did.
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
 
 from codegen.backends import TARGETS, dialects_of
@@ -27,9 +26,8 @@ def generated_files() -> dict[Path, str]:
     library = load_library()
     files = {root / "shaderlib" / "lang.py": lang_stub()}
     for target in TARGETS:
-        folder = Path(str(importlib.import_module(f"targets.{target}").__file__)).parent / "include"
         for d in dialects_of(target).values():
-            files[folder / include_name(d)] = emit(library, d)
+            files[root / "targets" / target / "include" / include_name(d)] = emit(library, d)
     readme = root / "README.md"
     if readme.exists():
         files[readme] = with_generated_parts(readme.read_text(encoding="utf-8"), library)

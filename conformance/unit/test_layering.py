@@ -26,7 +26,7 @@ GPU_PACKAGES = {"moderngl", "wgpu", "pyopencl"}
 TARGETS = {"glsl", "wgsl", "opencl"}
 LOADERS = {"import_module", "__import__", "find_spec"}
 # The composition root: the only files of codegen that may name what lies above codegen.
-COMPOSITION_ROOT = ("codegen/cli.py", "codegen/commands/")
+COMPOSITION_ROOT = ("codegen/cli.py", "codegen/backends.py", "codegen/commands/")
 MODULE_NAME = re.compile(r"(targets|conformance)(\.[a-z_]\w*)+(:\w+)?")
 
 
