@@ -1,4 +1,4 @@
-"""Targets by name: their dialects, harnesses and runtimes. Only this file of the generator knows the package."""
+"""Targets by name: dialects, harnesses, runtimes. Outside the command line only this file loads them."""
 
 from __future__ import annotations
 

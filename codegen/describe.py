@@ -25,7 +25,11 @@ def domain_text(domain: Domain | None) -> str:
 
 def describe(library: Library, f: Function) -> list[str]:
     """Lines for `vair show`."""
-    note = {"variant": f"variant of {f.base}", "printed": f"as the lecture prints {f.base}", "helper": "helper"}
+    note = {
+        "variant": f"variant of {f.base}",
+        "printed": f"as the lecture prints {f.base}",
+        "helper": "helper",
+    }
     kind = f" ({note[f.kind]})" if f.kind in note else ""
     lines = [signature(f), f"  {f.module}{kind}; {f.place.path}:{f.place.line}", "", f"  {f.doc.summary}", ""]
     width = max((len(key) for key in [*f.doc.entries, "error"]), default=5)
@@ -93,7 +97,8 @@ def as_data(library: Library, f: Function) -> dict[str, Any]:
         "base": f.base,
         "signature": signature(f),
         "parameters": [
-            {"name": p.name, "type": p.type.name, "domain": domain_text(p.domain) or None} for p in f.parameters
+            {"name": p.name, "type": p.type.name, "domain": domain_text(p.domain) or None}
+            for p in f.parameters
         ],
         "returns": f.returns.name,
         "summary": f.doc.summary,

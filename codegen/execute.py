@@ -1,4 +1,4 @@
-"""Running a library function on a device: flatten inputs to words, emit a program, give the words to a runtime."""
+"""Running a library function on a device: inputs to words, a program to a runtime, words to values."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def unflatten(type_: Type, words: Words) -> Value:
     def scalar(element: Scalar) -> Array:
         row = np.ascontiguousarray(next(rows))
         if element == BOOL:
-            return row != 0
+            return np.asarray(row != 0)
         return (
             row.view(np.float32)
             if element == F32

@@ -5,11 +5,15 @@ Prints the files that changed. CI runs it and fails if anything did.
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from codegen.backends import TARGETS, dialects_of
 from codegen.emit.dialect import Dialect
 from codegen.emit.module import emit
+from codegen.errors import UserError
+from codegen.files import write_text
 from codegen.library import default_root, load_library
 from codegen.ops.stub import generate as lang_stub
 from codegen.readme import with_generated_parts
@@ -20,27 +24,29 @@ def include_name(d: Dialect) -> str:
     return f"vair.{d.extension}" if d.name == d.target else f"vair-{d.name}.{d.extension}"
 
 
-def generated_files() -> dict[Path, str]:
-    """Every generated file with the text it should have. Reading the sources needs no generated file."""
+def generated_files() -> Iterator[tuple[Path, str]]:
+    """Every generated file with the text it should have; what the sources themselves need comes first."""
     root = default_root().parent
+    yield root / "shaderlib" / "lang.py", lang_stub()
     library = load_library()
-    files = {root / "shaderlib" / "lang.py": lang_stub()}
     for target in TARGETS:
         for d in dialects_of(target).values():
-            files[root / "targets" / target / "include" / include_name(d)] = emit(library, d)
+            yield root / "targets" / target / "include" / include_name(d), emit(library, d)
     readme = root / "README.md"
-    if readme.exists():
-        files[readme] = with_generated_parts(readme.read_text(encoding="utf-8"), library)
-    return files
+    yield readme, with_generated_parts(readme.read_text(encoding="utf-8"), library)
 
 
 def main() -> None:
     """Write what differs."""
-    for path, text in generated_files().items():
-        if not path.exists() or path.read_text(encoding="utf-8") != text:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8")
-            print(f"regenerated {path.relative_to(default_root().parent)}")
+    root = default_root().parent
+    try:
+        for path, text in generated_files():
+            if not path.exists() or path.read_text(encoding="utf-8") != text:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                write_text(path, text)
+                print(f"regenerated {path.relative_to(root)}")
+    except UserError as e:
+        sys.exit(f"generate: {e}")
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ def default_root() -> Path:
 
 @dataclass(frozen=True)
 class Selection:
-    """Functions and structs to emit together, dependencies first, and a hash of the sources they come from."""
+    """Functions and structs to emit together, dependencies first, and a hash of their sources."""
 
     functions: tuple[Function, ...]
     structs: tuple[StructDef, ...]
@@ -45,7 +45,7 @@ class Library:
 
     @functools.cached_property
     def functions(self) -> dict[str, Function]:
-        """Every function by name, in catalogue order: section, then base before variants and printed forms."""
+        """Every function by name, by section, base before variants and printed forms."""
         found = [self.resolver.function(name) for name in self.resolver.function_names()]
         return {f.name: f for f in sorted(found, key=self._order)}
 
@@ -127,7 +127,7 @@ class Library:
         return tuple(needed.values())
 
     def _hash(self, functions: Iterable[Function], structs: Iterable[StructDef]) -> str:
-        names = [item.name for item in (*functions, *structs)]
+        names = [*(f.name for f in functions), *(s.name for s in structs)]
         files = {(m := self.resolver.module_of(name)): self.resolver.file(m) for name in names}
         digest = hashlib.sha256()
         for module in sorted(files):

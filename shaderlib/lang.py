@@ -4,7 +4,8 @@ Generated from the op registry by `python -m codegen.generate`; do not edit. Sha
 executed: nothing here computes anything.
 """
 
-# ruff: noqa: A001, A002  the language's names are GLSL's, some of which Python uses too
+# mypy: disable-error-code="empty-body, no-overload-impl, misc, overload-overlap, override"
+# (declarations only; f32 is Python's float and u32 its int)
 
 from __future__ import annotations
 
@@ -61,7 +62,7 @@ def struct(cls: type[_T]) -> type[_T]:
 
 
 class vec2:
-    """2 components of f32; from components, one scalar, or shorter vectors."""
+    """2 components of f32, made of scalars or shorter vectors."""
 
     def __init__(self, *components: f32) -> None: ...
     @property
@@ -101,7 +102,7 @@ class vec2:
 
 
 class vec3:
-    """3 components of f32; from components, one scalar, or shorter vectors."""
+    """3 components of f32, made of scalars or shorter vectors."""
 
     def __init__(self, *components: f32 | vec2) -> None: ...
     @property
@@ -191,7 +192,7 @@ class vec3:
 
 
 class vec4:
-    """4 components of f32; from components, one scalar, or shorter vectors."""
+    """4 components of f32, made of scalars or shorter vectors."""
 
     def __init__(self, *components: f32 | vec2 | vec3) -> None: ...
     @property
@@ -371,7 +372,7 @@ class vec4:
 
 
 class uvec2:
-    """2 components of u32; from components, one scalar, or shorter vectors."""
+    """2 components of u32, made of scalars or shorter vectors."""
 
     def __init__(self, *components: u32) -> None: ...
     @property
@@ -412,7 +413,7 @@ class uvec2:
 
 
 class uvec3:
-    """3 components of u32; from components, one scalar, or shorter vectors."""
+    """3 components of u32, made of scalars or shorter vectors."""
 
     def __init__(self, *components: u32 | uvec2) -> None: ...
     @property

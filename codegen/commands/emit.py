@@ -15,7 +15,9 @@ from codegen.library import load_library
 @click.command("emit")
 @click.option("--target", required=True, help="glsl, wgsl or opencl.")
 @click.option("--dialect", "dialect_name", help="A dialect of the target; its default if none.")
-@click.option("--function", "functions", multiple=True, help="Emit this function with what it needs; repeatable.")
+@click.option(
+    "--function", "functions", multiple=True, help="Emit this function with what it needs; repeatable."
+)
 @click.option("--prefix", default=DEFAULT_PREFIX, show_default=True, help="Put before every name.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write this file instead of printing.")
 def command(

@@ -11,7 +11,9 @@ from codegen.library import VERSION, load_library
 
 
 @click.command("list")
-@click.option("--json", "as_json", is_flag=True, help="Machine-readable: signature, domain, error, operations.")
+@click.option(
+    "--json", "as_json", is_flag=True, help="Machine-readable: signature, domain, error, operations."
+)
 def command(as_json: bool) -> None:
     """List the public functions: signature, section, variants, domain, declared error."""
     library = load_library()
@@ -33,7 +35,9 @@ def command(as_json: bool) -> None:
         if f.module != section:
             section = f.module
             click.echo(f"\n{section}" if f is not next(iter(library.public.values())) else section)
-        note = {"variant": f"   variant of {f.base}", "printed": f"   printed form of {f.base}"}.get(f.kind, "")
+        note = {"variant": f"   variant of {f.base}", "printed": f"   printed form of {f.base}"}.get(
+            f.kind, ""
+        )
         click.echo(f"  {signature(f)}{note}")
         for bound in library.bounds.get(f.name, ()):
             click.echo(f"      error {bound.describe()}")

@@ -1,4 +1,4 @@
-"""What distinguishes one target language from another, as data. Instances live in targets/<target>/dialect.py."""
+"""What distinguishes one target language from another, as data; see targets/<target>/dialect.py."""
 
 from __future__ import annotations
 

@@ -79,9 +79,9 @@ def _header(dialect: Dialect, selection: Selection, names: Sequence[str] | None,
         "// SPDX-License-Identifier: MIT",
         "//",
         *wrap.comment(
-            "Directions are unit vectors that point away from the shaded point: l to the light, v to the viewer; "
-            "t is the strand tangent from root to tip, n the surface normal. Angles are in radians, colours linear "
-            "RGB. Finite input inside the stated domain gives a finite result.",
+            "Directions are unit vectors that point away from the shaded point: l to the light, v to the "
+            "viewer; t is the strand tangent from root to tip, n the surface normal. Angles are in radians, "
+            "colours linear RGB. Finite input inside the stated domain gives a finite result.",
             "// ",
             "// ",
         ),

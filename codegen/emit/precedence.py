@@ -1,7 +1,7 @@
 """Which operand may stand without parentheses. One table serves C, GLSL and WGSL.
 
-It is stricter than C where WGSL's grammar or a reader needs it (shifts, bit operators, && beside ||), and never
-lets an operand of the same level stand bare on the right, so a + (b + c) stays what it is.
+It is stricter than C where WGSL's grammar or a reader needs it (shifts, bit operators, && beside ||), and
+never lets an operand of the same level stand bare on the right, so a + (b + c) stays what it is.
 """
 
 from __future__ import annotations

@@ -6,8 +6,6 @@ import re
 import textwrap
 
 WIDTH = 100
-_BREAK_AFTER = re.compile(r", ")
-_BREAK_BEFORE = re.compile(r" (?=(?:[-+*/?:&|^]|&&|\|\|) )")
 
 
 def code(line: str, indent: str) -> list[str]:
@@ -39,7 +37,7 @@ def code(line: str, indent: str) -> list[str]:
 
 
 def comment(text: str, first: str, rest: str) -> list[str]:
-    """A comment wrapped at WIDTH; `first` and `rest` are what the first and further lines start with."""
+    """A comment wrapped at WIDTH; `first` and `rest` start its first and its further lines."""
     return textwrap.wrap(
         text,
         WIDTH,

@@ -45,8 +45,9 @@ def _numpy_namespace(floats: type[np.generic]) -> SimpleNamespace:
     def to_float(x: Array) -> Array:
         return _bits_to_float(x).astype(floats)
 
-    names = "abs minimum maximum floor sqrt exp exp2 log log2 sin cos arctan2 stack logical_and logical_or logical_not"
-    functions = {name: getattr(np, name) for name in names.split()}
+    names = "abs minimum maximum floor sqrt exp exp2 log log2 sin cos arctan2 stack"
+    logic = "logical_and logical_or logical_not"
+    functions = {name: getattr(np, name) for name in f"{names} {logic}".split()}
     return SimpleNamespace(**functions, float_to_bits=_float_to_bits, bits_to_float=to_float)
 
 

@@ -1,7 +1,7 @@
 """The interpreter: the definition of the IR, and a fourth target that needs no device.
 
-Every operation is rounded on its own (float32 stays float32). Both sides of a `Select` and both branches of an
-`If` are computed for all lanes and chosen lane by lane; lanes that have returned keep their value.
+Every operation is rounded on its own (float32 stays float32). Both sides of a `Select` and both branches of
+an `If` are computed for all lanes and chosen lane by lane; lanes that have returned keep their value.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from codegen.ops import BUILTINS, OPERATORS
 def evaluate(library: Library, name: str, inputs: Mapping[str, Any], arithmetic: str = "float32") -> Value:
     """The function's values over arrays of inputs.
 
-    inputs      parameter name -> array: scalars (N,), vectors (N, size), structs as dicts; single values repeat
+    inputs      parameter name -> array: scalars (N,), vectors (N, size), structs as dicts; one value repeats
     arithmetic  "float32" (op by op), "float64", or "mpmath" (at mpmath's current precision)
     returns     scalars (N,), vectors (N, size), structs as dicts of those
     raises      UserError for unknown functions, parameters or shapes

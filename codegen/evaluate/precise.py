@@ -15,10 +15,13 @@ Array = npt.NDArray[Any]
 
 def namespace() -> SimpleNamespace:
     def each(function: Callable[..., Any], arity: int = 1) -> Callable[..., Any]:
-        return np.frompyfunc(function, arity, 1)
+        found: Callable[..., Any] = np.frompyfunc(function, arity, 1)
+        return found
 
     def to_precise(x: Array) -> Array:
-        return each(mpmath.mpf)(np.asarray(x, np.uint32).view(np.float32).astype(np.float64)).astype(object)
+        return np.asarray(
+            each(mpmath.mpf)(np.asarray(x, np.uint32).view(np.float32).astype(np.float64)), dtype=object
+        )
 
     return SimpleNamespace(
         abs=each(abs),

@@ -28,8 +28,8 @@ def fold(node: ast.expr, lookup: Callable[[str], Number | None]) -> Number | Non
         case ast.Name(id=name):
             return lookup(name)
         case ast.UnaryOp(op=ast.USub(), operand=operand):
-            value = fold(operand, lookup)
-            return None if value is None else -value
+            negated = fold(operand, lookup)
+            return None if negated is None else -negated
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
             a, b = fold(left, lookup), fold(right, lookup)
             if a is None or b is None:

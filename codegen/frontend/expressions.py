@@ -44,10 +44,7 @@ class ExpressionLowering:
 
     def lower(self, node: ast.expr, expected: Type | None = None) -> ir.Expr:
         """The typed expression. `expected` decides the type of integer literals and is otherwise a check."""
-        if self._is_local(node):
-            folded = None
-        else:
-            folded = constants.fold(node, self._constant)
+        folded = None if self._is_local(node) else constants.fold(node, self._constant)
         e = self._literal(node, folded, expected) if folded is not None else self._lower(node, expected)
         if expected is not None and e.type != expected:
             self.fail(node, f"this is {e.type.name}, but {expected.name} is needed here")

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from codegen import names
 from codegen.errors import Place, SourceError, UserError, nearest, unknown
-from codegen.frontend import annotations, constants, docstring
+from codegen.frontend import annotations as stated
+from codegen.frontend import constants, docstring
 from codegen.frontend.source import LANG, ROOT_PACKAGE, SourceFile, parse_file
 from codegen.ir.domains import Domain
 from codegen.ir.nodes import Doc, Function, Parameter, StructDef, callees
@@ -110,7 +111,7 @@ class Resolver:
             return None
         where, original = found
         node = where.annotations.get(original)
-        return annotations.read(self, where, node, node)[0] if node is not None else None
+        return stated.read(self, where, node, node)[0] if node is not None else None
 
     def struct(self, file: SourceFile, name: str) -> StructDef:
         """The struct that `file` defines under `name`."""
@@ -127,7 +128,7 @@ class Resolver:
                         continue
                     case ast.AnnAssign(target=ast.Name(id=field), annotation=annotation, value=None):
                         names.check(field, "field", file.place(item))
-                        fields.append(Field(field, *annotations.read(self, file, annotation, item)))
+                        fields.append(Field(field, *stated.read(self, file, annotation, item)))
                     case _:
                         raise file.error(item, "a struct holds annotated fields and a docstring only")
             self._structs[name] = StructDef(Struct(name, tuple(fields)), file.section, doc, file.place(node))
@@ -172,10 +173,10 @@ class Resolver:
         parameters = []
         for argument in a.args:
             names.check(argument.arg, "parameter", file.place(argument))
-            type_, domain = annotations.read(self, file, argument.annotation, argument)
+            type_, domain = stated.read(self, file, argument.annotation, argument)
             domain = self._needs_domain(file, argument, type_, domain)
             parameters.append(Parameter(argument.arg, type_, domain))
-        return tuple(parameters), annotations.read(self, file, node.returns, node)[0]
+        return tuple(parameters), stated.read(self, file, node.returns, node)[0]
 
     def kind(self, file: SourceFile, node: ast.FunctionDef) -> tuple[str, str | None]:
         """What the decorators say: the function's kind and, for variants and printed forms, its base."""

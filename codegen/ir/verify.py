@@ -9,27 +9,29 @@ from codegen.ir.types import BOOL, F32, I32, U32, Struct, Type, Vector, vector_o
 from codegen.ops import BUILTINS, OPERATORS
 
 
-class MalformedIR(Exception):
+class MalformedIRError(Exception):
     """A bug in the front end or in a pass."""
 
+
+_PYTHON_TYPES: dict[Type, type] = {BOOL: bool, F32: float, I32: int, U32: int}
 
 Signature = Callable[[str], tuple[tuple[Type, ...], Type] | None]
 
 
 def verify(function: ir.Function, signature: Signature) -> None:
-    """Raise MalformedIR unless every node is typed as the registry says and every path returns.
+    """Raise MalformedIRError unless every node is typed as the registry says and every path returns.
 
     `signature` gives the parameter and result types of a called function, or None if there is none.
     """
     scope: dict[str, Type] = {}
     for p in function.parameters:
         if p.name in scope:
-            raise MalformedIR(f'{function.name}: two parameters named "{p.name}"')
+            raise MalformedIRError(f'{function.name}: two parameters named "{p.name}"')
         scope[p.name] = p.type
     check = _Checker(function, signature)
     check.block(function.body, scope, frozenset())
     if not check.returns(function.body):
-        raise MalformedIR(f"{function.name}: a path without return")
+        raise MalformedIRError(f"{function.name}: a path without return")
 
 
 class _Checker:
@@ -37,8 +39,8 @@ class _Checker:
         self.function = function
         self.signature = signature
 
-    def fail(self, what: str) -> MalformedIR:
-        return MalformedIR(f"{self.function.name}: {what}")
+    def fail(self, what: str) -> MalformedIRError:
+        return MalformedIRError(f"{self.function.name}: {what}")
 
     def returns(self, body: tuple[ir.Stmt, ...]) -> bool:
         last = body[-1] if body else None
@@ -88,7 +90,7 @@ class _Checker:
         types = tuple(c.type for c in ir.children(e))
         match e:
             case ir.Const():
-                python = {BOOL: bool, F32: float, I32: int, U32: int}.get(e.type)  # type: ignore[call-overload]  # keyed by every constant type
+                python = _PYTHON_TYPES.get(e.type)
                 return e.type if type(e.value) is python else None
             case ir.Var():
                 return scope.get(e.name)

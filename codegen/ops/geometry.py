@@ -1,5 +1,7 @@
 """Geometric built-ins on float vectors. Read this file as a table."""
 
+from typing import Any
+
 from codegen.ir.types import VEC3
 from codegen.ops.accuracy import Inherited, ScaledAbsolute, Ulp, promise
 from codegen.ops.op import Op
@@ -8,7 +10,7 @@ from codegen.ops.rules import FLOAT_VECTORS, one, reduction, same
 SEE = "WGSL 15.7.4; Vulkan GLSL.std.450; GLSL 8.5; OpenCL C 7.4 (geometric functions)"
 
 
-def _dot(m, a, b):  # type: ignore[no-untyped-def]  # polymorphic over numpy and mpmath arrays
+def _dot(m: Any, a: Any, b: Any) -> Any:
     """The sum of products, first component first, every operation rounded."""
     total = a[..., 0] * b[..., 0]
     for k in range(1, a.shape[-1]):
@@ -16,7 +18,7 @@ def _dot(m, a, b):  # type: ignore[no-untyped-def]  # polymorphic over numpy and
     return total
 
 
-def _cross(m, a, b):  # type: ignore[no-untyped-def]  # polymorphic over numpy and mpmath arrays
+def _cross(m: Any, a: Any, b: Any) -> Any:
     ax, ay, az = (a[..., k] for k in range(3))
     bx, by, bz = (b[..., k] for k in range(3))
     return m.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)

@@ -14,7 +14,8 @@ Generated from the op registry by `python -m codegen.generate`; do not edit. Sha
 executed: nothing here computes anything.
 """
 
-# ruff: noqa: A001, A002  the language's names are GLSL's, some of which Python uses too
+# mypy: disable-error-code="empty-body, no-overload-impl, misc, overload-overlap, override"
+# (declarations only; f32 is Python's float and u32 its int)
 
 from __future__ import annotations
 
@@ -92,7 +93,7 @@ def _vector_class(type_: Vector) -> str:
     letters = "xyzw"[: type_.size]
     lines = [
         f"class {type_.name}:",
-        f'    """{type_.size} components of {type_.element.name}; from components, one scalar, or shorter vectors."""',
+        f'    """{type_.size} components of {type_.element.name}, made of scalars or shorter vectors."""',
         "",
         f"    def __init__(self, *components: {_component_types(type_)}) -> None: ...",
     ]

@@ -1,4 +1,4 @@
-"""Prefixing: every function and struct of the library gets the prefix; fields and parameters keep their names.
+"""Prefixing: functions and structs of the library get the prefix; fields and parameters keep their names.
 
 before   StrandAngles{...}   def strand_specular(t, l): ... safe_pow(x, y)
 after    vair_StrandAngles{...}   def vair_strand_specular(t, l): ... vair_safe_pow(x, y)

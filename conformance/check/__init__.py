@@ -1,1 +1,1 @@
-"""Judging results: errors against references under declared bounds, reported so that a failure can be replayed."""
+"""Judging results: errors against references under declared bounds; every failure can be replayed."""

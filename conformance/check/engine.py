@@ -1,4 +1,4 @@
-"""Checking one function on one target: draw inputs, run, compare with the reference under the declared bounds."""
+"""Checking one function on one target: draw inputs, run, compare with the reference under its bounds."""
 
 from __future__ import annotations
 
@@ -69,14 +69,21 @@ class Draw:
 
 def draws(function: Function, uniform: int = UNIFORM_COUNT, family: int = FAMILY_COUNT) -> Iterable[Draw]:
     """The random points and every family of hard cases that fits the function's parameters."""
-    for name, count in [("uniform", uniform), *((f, family) for f in cases.families_for(function.parameters))]:
+    for name, count in [
+        ("uniform", uniform),
+        *((f, family) for f in cases.families_for(function.parameters)),
+    ]:
         yield draw(function, name, count, SEED)
 
 
 def draw(function: Function, family: str, count: int, seed: int) -> Draw:
     """One set of inputs, the same for the same arguments."""
     inputs = cases.draw(function, family, count, seed)
-    return Draw(family, _length(inputs), seed, inputs) if family != "uniform" else Draw(family, count, seed, inputs)
+    return (
+        Draw(family, _length(inputs), seed, inputs)
+        if family != "uniform"
+        else Draw(family, count, seed, inputs)
+    )
 
 
 def _length(inputs: Mapping[str, Any]) -> int:
@@ -103,7 +110,9 @@ def check_function(
     errors: list[list[npt.NDArray[np.float64]]] = [[] for _ in bounds]
     result.bounds = [BoundResult(b.describe(), b.bound) for b in bounds]
     for d in draws_of or draws(function):
-        _check_draw(result, bounds, errors, d, on.run(library, name, d.inputs), _expected(reference, d), function)
+        _check_draw(
+            result, bounds, errors, d, on.run(library, name, d.inputs), _expected(reference, d), function
+        )
     for found, parts in zip(result.bounds, errors, strict=True):
         _summarise(found, parts)
     result.seconds = time.perf_counter() - started
@@ -135,7 +144,9 @@ def _check_draw(
     finite = measure.finite(got)
     result.non_finite += int((~finite).sum())
     for lane in np.flatnonzero(~finite)[: MAX_FAILURES - len(result.failures)]:
-        result.failures.append(_failure(result, d, int(lane), "the result is not finite", got, expected, None, ""))
+        result.failures.append(
+            _failure(result, d, int(lane), "the result is not finite", got, expected, None, "")
+        )
     doubtful = ambiguous(function.name, d.inputs, function.base if function.kind == "variant" else None)
     result.ambiguous += int(doubtful.sum())
     covered = doubtful.copy()
@@ -157,7 +168,9 @@ def _check_draw(
         order = failed[np.argsort(-error[failed])]
         for bad in order[: max(MAX_FAILURES - len(result.failures), 0)]:
             text = f"{bound.measure} {error[bad]:.4g} exceeds {bound.bound:.4g}"
-            result.failures.append(_failure(result, d, int(bad), "outside its bound", got, expected, bound, text))
+            result.failures.append(
+                _failure(result, d, int(bad), "outside its bound", got, expected, bound, text)
+            )
     result.uncovered += int((~covered).sum())
 
 
@@ -169,7 +182,14 @@ def _summarise(found: BoundResult, parts: list[npt.NDArray[np.float64]]) -> None
 
 
 def _failure(
-    result: FunctionResult, d: Draw, lane: int, reason: str, got: Any, expected: Any, bound: Bound | None, text: str
+    result: FunctionResult,
+    d: Draw,
+    lane: int,
+    reason: str,
+    got: Any,
+    expected: Any,
+    bound: Bound | None,
+    text: str,
 ) -> Failure:
     field = bound.field if bound is not None else ""
     distances = []

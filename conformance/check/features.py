@@ -1,4 +1,4 @@
-"""Features that a bound's domain speaks of: a scalar input, a struct field, angle(x, y), dot(x, y), length(x)."""
+"""Features that a bound speaks of: a scalar input, a struct field, angle(x, y), dot(x, y), length(x)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def lookup(inputs: Mapping[str, Any], path: str) -> Array:
 def _unit(x: Array) -> Array:
     largest = np.maximum(np.abs(x).max(axis=-1, keepdims=True), 1e-300)
     x = x / largest
-    return x / np.maximum(np.linalg.norm(x, axis=-1, keepdims=True), 1e-300)
+    return np.asarray(x / np.maximum(np.linalg.norm(x, axis=-1, keepdims=True), 1e-300))
 
 
 def feature(inputs: Mapping[str, Any], text: str) -> Array:
@@ -41,13 +41,13 @@ def feature(inputs: Mapping[str, Any], text: str) -> Array:
     kind, first, second = call.groups()
     a = lookup(inputs, first)
     if kind == "length":
-        return np.linalg.norm(a, axis=-1)
+        return np.asarray(np.linalg.norm(a, axis=-1))
     b = lookup(inputs, second)
     if kind == "dot":
-        return np.sum(a * b, axis=-1)
+        return np.asarray(np.sum(a * b, axis=-1))
     a, b = _unit(a), _unit(b)
     sine = np.linalg.norm(np.cross(a - b, a + b), axis=-1) / 2.0
-    return np.arctan2(sine, np.abs(np.sum(a * b, axis=-1)))
+    return np.asarray(np.arctan2(sine, np.abs(np.sum(a * b, axis=-1))))
 
 
 def applies(bound: Bound, inputs: Mapping[str, Any], count: int) -> npt.NDArray[np.bool_]:

@@ -30,7 +30,7 @@ class Identity:
             identity = Identity(function, target, family, int(count), int(seed), int(lane))
         except ValueError:
             raise UserError(
-                f'"{text}" is no replay identity: function/target/family/count/seed/lane, as a failure prints it'
+                f'"{text}" is no replay identity; a failure prints function/target/family/count/seed/lane'
             ) from None
         if not 0 <= identity.lane < identity.count:
             raise UserError(f'replay identity "{text}" names lane {identity.lane} of {identity.count}')

@@ -27,7 +27,7 @@ def finite(value: Value) -> npt.NDArray[np.bool_]:
     for _, a in fields(value):
         ok = np.isfinite(a) if a.dtype.kind == "f" else np.ones(a.shape, np.bool_)
         masks.append(ok.all(axis=-1) if ok.ndim == 2 else ok)
-    return np.logical_and.reduce(masks)
+    return np.asarray(np.logical_and.reduce(masks), np.bool_)
 
 
 def error(bound: Bound, got: Value, expected: Value) -> npt.NDArray[np.float64]:

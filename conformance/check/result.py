@@ -1,4 +1,4 @@
-"""What a check finds: per bound the measured error, and failures that say everything needed to replay them."""
+"""What a check finds: the measured error per bound, and failures with all that replaying them needs."""
 
 from __future__ import annotations
 

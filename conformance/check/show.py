@@ -16,7 +16,9 @@ def one(value: Any, lane: int) -> str:
     decimals = ", ".join(f"{p:.9g}" if parts.dtype.kind == "f" else str(p) for p in parts)
     if parts.dtype == np.float64:
         return decimals if element.ndim == 0 else f"({decimals})"
-    words = " ".join(f"{w:08x}" for w in parts.astype(parts.dtype).view(np.uint32)) if parts.itemsize == 4 else ""
+    words = (
+        " ".join(f"{w:08x}" for w in parts.astype(parts.dtype).view(np.uint32)) if parts.itemsize == 4 else ""
+    )
     shown = decimals if element.ndim == 0 else f"({decimals})"
     return f"{shown} [{words}]" if words else shown
 
