@@ -33,13 +33,14 @@ def read_mesh(path: Path, subdivide: int = 0) -> Mesh:
     if not path.is_file():
         raise UserError(f"{path}: there is no such mesh file")
     try:
-        loaded = trimesh.load_mesh(str(path), process=True)
+        loaded = trimesh.load_mesh(str(path), process=False)
     except Exception as error:  # trimesh raises whatever its many format readers raise
         raise UserError(f"{path}: cannot be read as a mesh ({_first_line(error)})") from error
     if not isinstance(loaded, trimesh.Trimesh) or len(loaded.faces) == 0:
         raise UserError(f"{path}: holds no triangles")
     if not np.isfinite(loaded.vertices).all():
         raise UserError(f"{path}: has a vertex that is not finite")
+    loaded.merge_vertices(merge_tex=True, merge_norm=True)  # one normal per place
     return smooth(loaded.subdivide_loop(subdivide) if subdivide else loaded)
 
 
