@@ -46,6 +46,7 @@ class Library:
     @functools.cached_property
     def functions(self) -> dict[str, Function]:
         """Every function by name, by section, base before variants and printed forms."""
+        self.resolver.parse_all()
         found = [self.resolver.function(name) for name in self.resolver.function_names()]
         return {f.name: f for f in sorted(found, key=self._order)}
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ast
+import math
 from typing import TYPE_CHECKING
 
 from codegen.errors import nearest
 from codegen.frontend import constants
 from codegen.frontend.source import LANG, SourceFile
-from codegen.ir.domains import MARKERS, Domain
-from codegen.ir.types import VALUE_TYPES, Type
+from codegen.ir.domains import MARKERS, SCALES, Domain, Interval, Length, Unit
+from codegen.ir.types import F32, VALUE_TYPES, Type, Vector
 
 if TYPE_CHECKING:
     from codegen.frontend.resolve import Resolver
@@ -29,6 +30,7 @@ def read(
             for marker in markers:
                 domain = _marker(resolver, file, marker)
                 if domain is not None:
+                    _check_domain(file, marker, type_, domain)
                     return type_, domain
             raise file.error(node, f"Annotated needs a domain: {', '.join(MARKERS)}")
         case _:
@@ -42,9 +44,19 @@ def _named(resolver: Resolver, file: SourceFile, node: ast.expr, name: str) -> t
     if where is not None and original in where.structs:
         return resolver.struct(where, original).type, None
     if where is not None and original in where.values:
-        return read(resolver, where, where.values[original], node)
+        with resolver.defining(where, original, where.values[original]):
+            return read(resolver, where, where.values[original], node)
     names = [*VALUE_TYPES, *file.imports, *file.structs]
     raise file.error(node, f'unknown type "{name}"{nearest(name, names)}')
+
+
+def _check_domain(file: SourceFile, node: ast.expr, type_: Type, domain: Domain) -> None:
+    if isinstance(domain, Unit | Length) and not (isinstance(type_, Vector) and type_.element == F32):
+        raise file.error(node, f"{type(domain).__name__} is a domain of vectors, not of {type_.name}")
+    if isinstance(domain, Interval | Length) and not -math.inf < domain.low <= domain.high < math.inf:
+        raise file.error(node, "a domain needs finite ends, the lower one first")
+    if isinstance(domain, Interval) and domain.scale not in SCALES:
+        raise file.error(node, f'unknown scale "{domain.scale}"{nearest(domain.scale, SCALES)}')
 
 
 def _marker(resolver: Resolver, file: SourceFile, node: ast.expr) -> Domain | None:
@@ -62,7 +74,7 @@ def _marker(resolver: Resolver, file: SourceFile, node: ast.expr) -> Domain | No
             raise file.error(argument, "a domain is stated in numbers")
         return float(number)
 
-    try:
-        return kind(*map(value, node.args), **{k.arg or "": value(k.value) for k in node.keywords})  # type: ignore[arg-type]  # checked by the dataclass itself
+    try:  # the dataclass itself checks how many there are
+        return kind(*map(value, node.args), **{k.arg or "": value(k.value) for k in node.keywords})  # type: ignore[arg-type]
     except TypeError:
         raise file.error(node, f"wrong arguments for {node.func.id}") from None

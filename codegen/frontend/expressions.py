@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, NoReturn
 
 from codegen.errors import nearest
 from codegen.frontend import constants
-from codegen.frontend.source import LANG, SourceFile
+from codegen.frontend.source import LANG, SourceFile, describe
 from codegen.ir import nodes as ir
 from codegen.ir.types import BOOL, F32, I32, U32, VALUE_TYPES, Scalar, Struct, Type, Vector, vector_of
 from codegen.ops import BUILTINS, OPERATORS
@@ -32,12 +32,18 @@ _CASTS: dict[str, Scalar] = {"f32": F32, "i32": I32, "u32": U32}
 
 
 class ExpressionLowering:
-    """Lowers the expressions of one function; `scope` maps the visible locals to their types."""
+    """Lowers the expressions of one function.
 
-    def __init__(self, resolver: Resolver, file: SourceFile, scope: Mapping[str, Type]) -> None:
+    `scope` maps the visible locals to their types; `ended` names locals of blocks that have ended.
+    """
+
+    def __init__(
+        self, resolver: Resolver, file: SourceFile, scope: Mapping[str, Type], ended: Collection[str] = ()
+    ) -> None:
         self.resolver = resolver
         self.file = file
         self.scope = scope
+        self.ended = ended
 
     def fail(self, node: ast.AST, sentence: str) -> NoReturn:
         raise self.file.error(node, sentence)
@@ -59,21 +65,30 @@ class ExpressionLowering:
     def _literal(self, node: ast.expr, value: constants.Number, expected: Type | None) -> ir.Expr:
         if isinstance(value, bool):
             return ir.Const(BOOL, value)
+        stated_types = [self._stated_type(part) for part in ast.walk(node)]
+        stated = next((t for t in stated_types if t is not None), None)
         if isinstance(value, float):
             rounded = constants.to_float32(value)
             if rounded is None:
-                self.fail(node, f"{value!r} does not fit into a float32")
+                self.fail(node, f"{value!r} does not fit into a normal float32")
+            if isinstance(node, ast.Name) and stated is not None and stated != F32:
+                self.fail(node, f'"{node.id}" is stated to be {stated.name}, but {value!r} is f32')
             return ir.Const(F32, rounded)
-        wanted = expected
-        if wanted is None and isinstance(node, ast.Name):
-            wanted = self.resolver.constant_type(self.file, node.id)
-        wanted = wanted or I32
+        wanted = expected or stated or I32
         if wanted == F32:
             self.fail(node, f"write {value}.0: a whole number here would be an integer")
         low, high = (0, 2**32 - 1) if wanted == U32 else (-(2**31), 2**31 - 1)
         if wanted not in (I32, U32) or not low <= value <= high:
             self.fail(node, f"{value} is not a value of {wanted.name}")
+        if value == low < 0:
+            self.fail(node, f"{value} has no literal in C: its sign is an operator")
         return ir.Const(wanted, value)
+
+    def _stated_type(self, node: ast.AST) -> Type | None:
+        """The type that the annotation of a named constant states."""
+        if not isinstance(node, ast.Name) or node.id in self.scope:
+            return None
+        return self.resolver.constant_type(self.file, node.id)
 
     def _lower(self, node: ast.expr, expected: Type | None) -> ir.Expr:
         match node:
@@ -87,6 +102,8 @@ class ExpressionLowering:
                 a, b = self._pair(body, orelse, expected)
                 if a.type != b.type:
                     self.fail(node, f"the two sides differ: {a.type.name} and {b.type.name}")
+                if isinstance(a.type, Struct):
+                    self.fail(node, "a conditional expression chooses numbers and vectors; write if and else")
                 return ir.Select(a.type, self.lower(test, BOOL), a, b)
             case ast.UnaryOp(op=op, operand=operand) if type(op) in _SYMBOLS:
                 e = self.lower(operand, expected if isinstance(op, ast.USub | ast.Invert) else None)
@@ -103,10 +120,16 @@ class ExpressionLowering:
                     e = self._operation(node, _SYMBOLS[type(op)], (e, self.lower(value, BOOL)))
                 return e
             case _:
-                self.fail(node, f"{type(node).__name__} is outside the shader subset of Python")
+                self.fail(node, f"{describe(node)} is outside the shader subset of Python")
 
     def _name(self, node: ast.expr, name: str) -> ir.Expr:
         if name not in self.scope:
+            if name in self.ended:
+                self.fail(
+                    node, f'"{name}" was assigned in a block that has ended; assign it before the block'
+                )
+            if name in self.file.imports or self.resolver.find(self.file, name):
+                self.fail(node, f'"{name}" is neither a local nor a constant number')
             known = [*self.scope, *self.file.imports, *self.file.values]
             self.fail(node, f'unknown name "{name}"{nearest(name, known)}')
         return ir.Var(self.scope[name], name)
@@ -145,7 +168,7 @@ class ExpressionLowering:
     def _binary(self, node: ast.expr, op: ast.AST, left: ast.expr, right: ast.expr) -> ir.Expr:
         symbol = _SYMBOLS.get(type(op))
         if symbol is None:
-            hint = _HINTS.get(type(op), f"{type(op).__name__} is outside the shader subset of Python")
+            hint = _HINTS.get(type(op), f"{describe(op)} is outside the shader subset of Python")
             self.fail(node, hint)
         return self._operation(node, symbol, self._pair(left, right, None))
 
@@ -155,9 +178,16 @@ class ExpressionLowering:
         if result is None:
             shown = " and ".join(t.name for t in types)
             hint = " (for whole numbers write //)" if symbol == "/" and U32 in types else ""
-            if symbol in ("+", "-") and F32 in types and len({*types}) == 2:
+            if symbol == "/" and types == (I32, I32):
+                hint = " (write the numbers with a point)"
+            if symbol in ("+", "-") and F32 in types and any(isinstance(t, Vector) for t in types):
                 hint = " (to add a number to a vector, make it a vector: vec3(x))"
             self.fail(node, f'"{symbol}" takes no {shown}{hint}')
+        last = operands[-1]
+        if symbol in ("/", "//", "%") and isinstance(last, ir.Const) and last.value == 0:
+            self.fail(node, "this divides by zero")
+        if symbol in ("<<", ">>") and isinstance(last, ir.Const) and not 0 <= last.value <= 31:
+            self.fail(node, "a shift is by 0 to 31 bits")
         if len(operands) == 1:
             return ir.Unary(result, symbol, operands[0])
         return ir.Binary(result, symbol, operands[0], operands[1])
@@ -179,8 +209,8 @@ class ExpressionLowering:
                 return self._vector(node, VALUE_TYPES[original])
             if original in BUILTINS:
                 return self._builtin(node, original)
-        importable = [*BUILTINS, *VALUE_TYPES, *self.resolver.function_names()]
-        if name in importable:
+        importable = [*BUILTINS, *(set(VALUE_TYPES) - {"bool"}), *self.resolver.function_names()]
+        if name in importable and name not in self.scope:
             source = LANG if name in BUILTINS or name in VALUE_TYPES else self.resolver.module_of(name)
             self.fail(node, f'"{name}" is not imported: from {source} import {name}')
         self.fail(node, f'unknown function "{name}"{nearest(name, importable)}')
@@ -189,7 +219,8 @@ class ExpressionLowering:
         if node.keywords or any(isinstance(a, ast.Starred) for a in node.args):
             self.fail(node, f"{name} takes its arguments by position")
         if len(node.args) != count:
-            self.fail(node, f"{name} takes {count} arguments, not {len(node.args)}")
+            plural = "" if count == 1 else "s"
+            self.fail(node, f"{name} takes {count} argument{plural}, not {len(node.args)}")
         return node.args
 
     def _library_call(self, node: ast.Call, where: SourceFile, name: str) -> ir.Expr:

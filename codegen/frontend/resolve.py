@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from codegen import names
 from codegen.errors import Place, SourceError, UserError, nearest, unknown
 from codegen.frontend import annotations as stated
 from codegen.frontend import constants, docstring
-from codegen.frontend.source import LANG, ROOT_PACKAGE, SourceFile, parse_file
-from codegen.ir.domains import Domain
+from codegen.frontend.source import LANG, ROOT_PACKAGE, SourceFile, parse_file, read_source
+from codegen.ir.domains import MARKERS, Domain
 from codegen.ir.nodes import Doc, Function, Parameter, StructDef, callees
-from codegen.ir.types import Field, Struct, Type
+from codegen.ir.types import VALUE_TYPES, Field, Struct, Type
+from codegen.ops import BUILTINS
 
+LANG_NAMES = frozenset(
+    {*BUILTINS, *VALUE_TYPES, *MARKERS, "variant", "printed", "helper", "struct"} - {"bool"}
+)
 _DEFINITION = re.compile(r"^(def|class) (\w+)", re.MULTILINE)
 
 
@@ -32,6 +38,7 @@ class Resolver:
         self._functions: dict[str, Function] = {}
         self._structs: dict[str, StructDef] = {}
         self._lowering: list[str] = []
+        self._defining: list[tuple[str, str]] = []
         for path in sorted(root.rglob("*.py")):
             relative = path.relative_to(root)
             if path.name in ("lang.py", "__init__.py"):
@@ -43,12 +50,13 @@ class Resolver:
     def _scan(self, module: str) -> None:
         """Note what a file defines without parsing it: one function of many needs few of the files."""
         path, shown = self._paths[module]
-        for found in _DEFINITION.finditer(path.read_text(encoding="utf-8")):
+        for found in _DEFINITION.finditer(read_source(path, shown)):
             name = found.group(2)
             if name in self._defined and self._defined[name] != module:
                 other = self._paths[self._defined[name]][1]
                 line = found.string.count("\n", 0, found.start()) + 1
-                raise SourceError(Place(shown, line), f'"{name}" is already defined in {other}')
+                place = Place(shown, line, text=found.string.splitlines()[line - 1])
+                raise SourceError(place, f'"{name}" is already defined in {other}')
             self._defined[name] = module
             if found.group(1) == "def":
                 self._function_names.append(name)
@@ -57,8 +65,36 @@ class Resolver:
         """The parsed file of a module."""
         if module not in self._files:
             path, shown = self._paths[module]
-            self._files[module] = parse_file(path, module, shown)
+            file = parse_file(path, module, shown)
+            for source, name in file.imports.values():
+                self._check_import(file, source, name)
+            self._files[module] = file
         return self._files[module]
+
+    def parse_all(self) -> None:
+        """Parse every file, so that a source that nothing uses yet is checked too."""
+        for module in self._paths:
+            self.file(module)
+
+    def _check_import(self, file: SourceFile, module: str, name: str) -> None:
+        node = next(n for local, n in file.import_nodes.items() if file.imports[local] == (module, name))
+        if module == LANG:
+            if name not in LANG_NAMES:
+                raise file.error(node, f'{LANG} defines no "{name}"{nearest(name, LANG_NAMES)}')
+        elif module not in self._paths:
+            raise file.error(node, f'no source "{module}" to import{nearest(module, self._paths)}')
+
+    @contextmanager
+    def defining(self, file: SourceFile, name: str, node: ast.AST) -> Iterator[None]:
+        """While the definition of a name is read: refuse a definition that leads back to itself."""
+        key = file.module, name
+        if key in self._defining:
+            raise file.error(node, f'"{name}" is defined by itself')
+        self._defining.append(key)
+        try:
+            yield
+        finally:
+            self._defining.pop()
 
     def where(self, name: str) -> SourceFile | None:
         """The file that defines a function or struct; None for an unknown name."""
@@ -80,16 +116,14 @@ class Resolver:
             module, original = file.imports[name]
             if module == LANG:
                 return None
-            if module not in self._paths:
-                sentence = f'no source "{module}" to import{nearest(module, self._paths)}'
-                raise SourceError(Place(file.shown_path, 1), sentence)
             found = self.file(module)
             if original in found.imports:
-                return self.find(found, original)
+                with self.defining(file, name, file.import_nodes[name]):
+                    return self.find(found, original)
             defined = [*found.values, *found.structs, *found.functions]
             if original not in defined:
                 sentence = f'{found.shown_path} defines no "{original}"{nearest(original, defined)}'
-                raise SourceError(Place(file.shown_path, 1), sentence)
+                raise file.error(file.import_nodes[name], sentence)
             return found, original
         if name in file.values or name in file.structs or name in file.functions:
             return file, name
@@ -102,7 +136,10 @@ class Resolver:
             return None
         where, original = found
         value = where.values.get(original)
-        return None if value is None else constants.fold(value, lambda n: self.constant(where, n))
+        if value is None:
+            return None
+        with self.defining(where, original, value):
+            return constants.fold(value, lambda n: self.constant(where, n))
 
     def constant_type(self, file: SourceFile, name: str) -> Type | None:
         """The type that a constant's annotation states; None without one."""
@@ -120,7 +157,7 @@ class Resolver:
             names.check(name, "struct", file.place(node))
             if [d.id for d in node.decorator_list if isinstance(d, ast.Name)] != ["struct"]:
                 raise file.error(node, "a class in a shader source is a struct: decorate it with @struct")
-            doc = docstring.parse(ast.get_docstring(node, clean=False))
+            doc = self._doc(file, node)
             fields: list[Field] = []
             for item in node.body:
                 match item:
@@ -128,9 +165,17 @@ class Resolver:
                         continue
                     case ast.AnnAssign(target=ast.Name(id=field), annotation=annotation, value=None):
                         names.check(field, "field", file.place(item))
-                        fields.append(Field(field, *stated.read(self, file, annotation, item)))
+                        if any(f.name == field for f in fields):
+                            raise file.error(item, f'field "{field}" is given twice')
+                        with self.defining(file, name, item):
+                            type_, domain = stated.read(self, file, annotation, item)
+                        fields.append(
+                            Field(field, type_, self._needs_domain(file, item, field, type_, domain))
+                        )
                     case _:
                         raise file.error(item, "a struct holds annotated fields and a docstring only")
+            if not fields:
+                raise file.error(node, "a struct needs a field")
             self._structs[name] = StructDef(Struct(name, tuple(fields)), file.section, doc, file.place(node))
         return self._structs[name]
 
@@ -170,16 +215,20 @@ class Resolver:
         extra = [*a.posonlyargs, *a.kwonlyargs, *filter(None, (a.vararg, a.kwarg)), *a.defaults]
         if extra:
             raise file.error(extra[0], "a shader function has plain parameters without defaults")
-        parameters = []
+        parameters: list[Parameter] = []
         for argument in a.args:
             names.check(argument.arg, "parameter", file.place(argument))
+            if any(p.name == argument.arg for p in parameters):
+                raise file.error(argument, f'parameter "{argument.arg}" is given twice')
             type_, domain = stated.read(self, file, argument.annotation, argument)
-            domain = self._needs_domain(file, argument, type_, domain)
+            domain = self._needs_domain(file, argument, argument.arg, type_, domain)
             parameters.append(Parameter(argument.arg, type_, domain))
         return tuple(parameters), stated.read(self, file, node.returns, node)[0]
 
     def kind(self, file: SourceFile, node: ast.FunctionDef) -> tuple[str, str | None]:
         """What the decorators say: the function's kind and, for variants and printed forms, its base."""
+        if len(node.decorator_list) > 1:
+            raise file.error(node.decorator_list[1], "a function has one decorator at most")
         for decorator in node.decorator_list:
             match decorator:
                 case ast.Name(id="helper"):
@@ -188,7 +237,7 @@ class Resolver:
                     func=ast.Name(id=("variant" | "printed") as kind),
                     args=[ast.Constant(value=str() as base)],
                 ):
-                    if base not in self._defined:
+                    if base not in self._function_names or base == node.name:
                         raise file.error(
                             decorator, f'unknown base "{base}"{nearest(base, self.function_names())}'
                         )
@@ -200,17 +249,24 @@ class Resolver:
         return "base", None
 
     def _needs_domain(
-        self, file: SourceFile, argument: ast.arg, type_: Type, domain: Domain | None
+        self, file: SourceFile, node: ast.AST, name: str, type_: Type, domain: Domain | None
     ) -> Domain | None:
         if (
             domain is None
             and not isinstance(type_, Struct)
             and type_.name not in ("bool", "u32", "i32", "uvec2", "uvec3")
         ):
-            raise file.error(
-                argument, f'state the domain of "{argument.arg}": Annotated[{type_.name}, Interval(...)]'
-            )
+            raise file.error(node, f'state the domain of "{name}": Annotated[{type_.name}, Interval(...)]')
         return domain
+
+    @staticmethod
+    def _doc(file: SourceFile, node: ast.FunctionDef | ast.ClassDef) -> Doc:
+        text = ast.get_docstring(node, clean=False)
+        if text is not None and "\\" in text:
+            raise file.error(
+                node.body[0], "a backslash in a docstring would continue the emitted comment line"
+            )
+        return docstring.parse(text)
 
     def _lower(self, file: SourceFile, node: ast.FunctionDef) -> Function:
         from codegen.frontend.statements import lower_body  # imported here: it needs Resolver for its types
@@ -218,6 +274,9 @@ class Resolver:
         names.check(node.name, "function", file.place(node))
         parameters, returns = self.signature(file, node)
         kind, base = self.kind(file, node)
-        doc: Doc = docstring.parse(ast.get_docstring(node, clean=False))
-        body = lower_body(self, file, node, parameters, returns)
+        doc = self._doc(file, node)
+        try:
+            body = lower_body(self, file, node, parameters, returns)
+        except RecursionError:
+            raise file.error(node, f'an expression of "{node.name}" is nested too deeply') from None
         return Function(node.name, file.section, kind, base, parameters, returns, body, doc, file.place(node))

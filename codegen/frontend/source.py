@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from codegen.errors import Place, SourceError
+from codegen.errors import Place, SourceError, UserError
 
 ROOT_PACKAGE = "shaderlib"
 LANG = f"{ROOT_PACKAGE}.lang"
@@ -21,6 +21,7 @@ class SourceFile:
     shown_path: str
     text: str
     imports: dict[str, tuple[str, str]] = field(default_factory=dict)
+    import_nodes: dict[str, ast.ImportFrom] = field(default_factory=dict)
     values: dict[str, ast.expr] = field(default_factory=dict)
     annotations: dict[str, ast.expr] = field(default_factory=dict)
     structs: dict[str, ast.ClassDef] = field(default_factory=dict)
@@ -45,15 +46,59 @@ class SourceFile:
         return SourceError(self.place(node), sentence)
 
 
+WORDS = {
+    "Expr": "an expression without effect",
+    "FunctionDef": "a nested function",
+    "AsyncFunctionDef": "an async function",
+    "ClassDef": "a nested class",
+    "Constant": "a text or another constant that is no number",
+    "JoinedStr": "a text",
+    "Call": "a call of anything but a plain name",
+    "ListComp": "a comprehension",
+    "GeneratorExp": "a comprehension",
+    "Subscript": "an index; components are written v.x",
+    "AugAssign": "an assignment to a component",
+    "NamedExpr": "an assignment inside an expression",
+    "Starred": "an unpacked argument",
+    "Import": "a plain import (write from shaderlib... import name)",
+    "ImportFrom": "a relative import",
+    "Assign": "an assignment to several names",
+    "AnnAssign": "a declaration without a value",
+}
+
+
+def describe(node: ast.AST) -> str:
+    """What a piece of Python is, in words; its class name in lower case where that says it."""
+    name = type(node).__name__
+    return WORDS.get(name, f'"{name.lower()}"')
+
+
+def read_source(path: Path, shown_path: str) -> str:
+    """The text of a source; raises UserError where it cannot be read, SourceError where it is not ASCII."""
+    try:
+        data = path.read_bytes()
+    except OSError as e:
+        raise UserError(f"cannot read {shown_path}: {e.strerror}") from None
+    lines = data.splitlines()
+    for number, line in enumerate(lines, 1):
+        if not line.isascii():
+            column = next(k for k, byte in enumerate(line, 1) if byte > 127)
+            place = Place(shown_path, number, column, line.decode("utf-8", "replace"))
+            raise SourceError(place, "a shader source is ASCII: its comments are emitted into shaders")
+    return data.decode("ascii").replace("\r\n", "\n")
+
+
 def parse_file(path: Path, module: str, shown_path: str) -> SourceFile:
     """Parse and index one file; raises SourceError for what no shader source may contain at top level."""
-    text = path.read_text(encoding="utf-8")
+    text = read_source(path, shown_path)
     file = SourceFile(module, shown_path, text)
     try:
         tree = ast.parse(text, filename=shown_path)
     except SyntaxError as e:
         place = Place(shown_path, e.lineno or 1, e.offset or 1, (e.text or "").rstrip("\n"))
         raise SourceError(place, f"not valid Python: {e.msg}") from None
+    except (ValueError, RecursionError, MemoryError):
+        raise SourceError(Place(shown_path, 1), "not valid Python, or nested too deeply") from None
     for position, node in enumerate(tree.body):
         _index(file, node, is_first=position == 0)
     return file
@@ -79,9 +124,8 @@ def _index(file: SourceFile, node: ast.stmt, *, is_first: bool) -> None:
             _define(file, node, name)
             file.functions[name] = node
         case _:
-            what = type(node).__name__
             raise file.error(
-                node, f"a shader source holds imports, constants, structs and functions, not {what}"
+                node, f"a shader source holds imports, constants, structs and functions, not {describe(node)}"
             )
 
 
@@ -101,3 +145,4 @@ def _imports(file: SourceFile, node: ast.ImportFrom, module: str, names: Iterabl
         local = alias.asname or alias.name
         _define(file, node, local)
         file.imports[local] = (module, alias.name)
+        file.import_nodes[local] = node

@@ -11,7 +11,7 @@ from codegen import names
 from codegen.errors import nearest
 from codegen.frontend import constants
 from codegen.frontend.expressions import ExpressionLowering
-from codegen.frontend.source import SourceFile
+from codegen.frontend.source import SourceFile, describe
 from codegen.ir import nodes as ir
 from codegen.ir.types import BOOL, I32, Type
 
@@ -68,11 +68,7 @@ class StatementLowering:
         return tuple(lowered)
 
     def expression(self, node: ast.expr, expected: Type | None = None) -> ir.Expr:
-        if isinstance(node, ast.Name) and node.id not in self.scope and node.id in self.ended:
-            raise self.file.error(
-                node, f'"{node.id}" was assigned in a block that has ended; assign it before the block'
-            )
-        return ExpressionLowering(self.resolver, self.file, self.scope).lower(node, expected)
+        return ExpressionLowering(self.resolver, self.file, self.scope, self.ended).lower(node, expected)
 
     def statement(self, node: ast.stmt) -> ir.Stmt:
         match node:
@@ -99,8 +95,7 @@ class StatementLowering:
             case ast.Return():
                 raise self.file.error(node, "return a value")
             case _:
-                what = type(node).__name__
-                raise self.file.error(node, f"{what} is outside the shader subset of Python")
+                raise self.file.error(node, f"{describe(node)} is outside the shader subset of Python")
 
     def assignment(self, node: ast.stmt, name: str, value: ast.expr) -> ir.Stmt:
         known = self.scope.get(name)
@@ -129,9 +124,11 @@ class StatementLowering:
                 values = [constants.fold(b, lambda n: self.resolver.constant(self.file, n)) for b in bounds]
             case _:
                 raise self.file.error(node, "a loop is written for i in range(CONSTANT)")
-        if not all(isinstance(v, int) for v in values):
+        if not all(isinstance(v, int) and not isinstance(v, bool) for v in values):
             raise self.file.error(node, "the bounds of range() must be constant whole numbers")
         whole = [int(v) for v in values if v is not None]
+        if not all(-(2**31) < v < 2**31 for v in whole):
+            raise self.file.error(node, "the bounds of range() must fit into an i32")
         start, stop = (0, whole[0]) if len(whole) == 1 else (whole[0], whole[1])
         if stop - start > MAX_ITERATIONS:
             raise self.file.error(node, f"a loop may run {MAX_ITERATIONS} times at most")
@@ -143,6 +140,7 @@ class StatementLowering:
         self.loop_names.add(name)
         body = self.block(node.body)
         self.loop_names.discard(name)
+        self.ended.add(name)
         self.scope = outer
         return ir.For(name, start, stop, body, node.lineno)
 

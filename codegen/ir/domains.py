@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+SCALES = ("linear", "log")
+
 
 @dataclass(frozen=True)
 class Interval:
