@@ -1,0 +1,1 @@
+"""Maps of the sphere onto squares, texel solid angles, filtered lookups, weights of combined estimators."""
