@@ -1,0 +1,32 @@
+"""GGX lobe: sampler."""
+
+from shaderlib.direction.mirror import mirror
+from shaderlib.domains import Direction
+from shaderlib.lang import max, normalize, sqrt, vec3
+from shaderlib.lobes.domains import Roughness, UniformPair
+from shaderlib.numeric.safe_normalize import safe_normalize
+from shaderlib.sampling.unit_circle import unit_circle
+
+
+def ggx_sample(u: UniformPair, v: Direction, alpha_x: Roughness, alpha_y: Roughness) -> vec3:
+    """Direction to the light, drawn with density ggx_pdf: v mirrored about a visible normal.
+
+    u           pair of uniform numbers in [0, 1); u.y = 0 is the middle of the visible normals
+    v           direction to the viewer, in the local frame
+    alpha_x     width along the tangent
+    alpha_y     width along the bitangent
+    returns     unit vector, possibly below the horizon. The weight value l.z / pdf is at most 1:
+                l.z (v.z + S(v)) / (l.z S(v) + v.z S(l)), S = ggx_stretch
+    degenerate  v.z <= 0: the normals are those visible from the horizon
+    form        in the space where the surface is a hemisphere, visible normals are a uniform spherical cap
+                plus the view direction V. Written with a = u.y (1 + V.z): sine sqrt(a (2 - a)) and height (1
+                - u.y) (1 + V.z), so nothing cancels and the height is never 0
+    source      Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps
+    """
+    up = vec3(0.0, 0.0, 1.0)
+    w = safe_normalize(vec3(alpha_x * v.x, alpha_y * v.y, max(v.z, 0.0)), up)
+    a = u.y * (1.0 + w.z)
+    cap = sqrt(max(a * (2.0 - a), 0.0)) * unit_circle(u.x)
+    height = (1.0 - u.y) * (1.0 + w.z)
+    h = normalize(vec3(alpha_x * (cap.x + w.x), alpha_y * (cap.y + w.y), height))
+    return normalize(mirror(v, h))
