@@ -54,6 +54,13 @@ class Studio:
         background = gradient(self.picture.size, self.picture.top, self.picture.bottom)
         return resolve(self.seen.mask, shaded, background)
 
+    @property
+    def covered(self) -> npt.NDArray[np.bool_]:
+        """The pixels (height, width) that show some of the mesh."""
+        width, height = self.picture.size
+        side = self.picture.supersample
+        return np.asarray(self.seen.mask.reshape(height, side, width, side).any(axis=(1, 3)))
+
 
 def set_up(path: Path, available: Models) -> Studio:
     """Read and check a scene file, and its mesh; `available` are the functions that can shade."""

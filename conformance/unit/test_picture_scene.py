@@ -42,7 +42,7 @@ def test_a_scene_without_a_picture_may_be_short(tmp_path: Path) -> None:
 
 
 def test_a_range_is_shown_at_its_middle(tmp_path: Path) -> None:
-    text = GOOD.replace("exponent = 11.0", "exponent = { min = 8, max = 16 }")
+    text = GOOD.replace("exponent = 16.0", "exponent = { min = 8, max = 16 }")
     scene = read_scene(written(tmp_path, text))
     assert scene.parameters["exponent"] == Range(8.0, 16.0)
     assert bind(scene, models(load_library())).values["exponent"] == (12.0,)
@@ -58,9 +58,9 @@ WRONG = [
     ('targets = ["glsl", "wgsl", "opencl"]', 'targets = "glsl"', "must be an array of targets"),
     ('budget = "half-step-8bit"', 'budget = "half-step"', 'did you mean "half-step-8bit"?, or a number'),
     ('budget = "half-step-8bit"', "budget = -1", "[scene] budget: must be a number from 0 to"),
-    ("exponent = 11.0", "exponent = true", '[parameters] "exponent": must be a number, a vector'),
-    ("exponent = 11.0", "exponent = { min = 9, max = 2 }", "min = 9 is above max = 2"),
-    ("exponent = 11.0", "exponent = { mni = 9, max = 2 }", 'min: is missing; did you mean "mni"?'),
+    ("exponent = 16.0", "exponent = true", '[parameters] "exponent": must be a number, a vector'),
+    ("exponent = 16.0", "exponent = { min = 9, max = 2 }", "min = 9 is above max = 2"),
+    ("exponent = 16.0", "exponent = { mni = 9, max = 2 }", 'min: is missing; did you mean "mni"?'),
     ("directional = 1", "directional = 2", "[lights] directional: is 2, but [[render.light]] lists 1"),
     ("directional = 1", "point = 1", "[lights] point: a picture is lit by directional lights only"),
     ("size = [768, 768]", "size = [768, 0]", "[render] size: must be [width, height] from 1 to 4096"),
@@ -102,17 +102,17 @@ UNBINDABLE = [
         'model = "bruhsed" ',
         'no shading function is called "bruhsed"; did you mean "brushed"?',
     ),
-    ("exponent = 11.0", "exponnet = 11.0", 'brushed_shade has no such parameter; did you mean "exponent"?'),
-    ("exponent = 11.0", "", '[parameters] "exponent": is missing; brushed_shade needs it'),
-    ("exponent = 11.0", "exponent = [1.0, 2.0]", '"exponent": must be a number'),
+    ("exponent = 16.0", "exponnet = 11.0", 'brushed_shade has no such parameter; did you mean "exponent"?'),
+    ("exponent = 16.0", "", '[parameters] "exponent": is missing; brushed_shade needs it'),
+    ("exponent = 16.0", "exponent = [1.0, 2.0]", '"exponent": must be a number'),
     (
-        "exponent = 11.0",
+        "exponent = 16.0",
         "exponent = -1.0",
         '"exponent": must lie in [0, 100000], where brushed_shade is',
     ),
-    ("exponent = 11.0", "exponent = { min = 1, max = 1e9 }", '"exponent": must lie in [0, 100000]'),
-    ("k_diffuse = [0.14, 0.046, 0.020]", "k_diffuse = 0.1", '"k_diffuse": must be a vector of 3 numbers'),
-    ("exponent = 11.0", "n = [0, 0, 1]", '"n": is supplied by the picture for every sample'),
+    ("exponent = 16.0", "exponent = { min = 1, max = 1e9 }", '"exponent": must lie in [0, 100000]'),
+    ("k_diffuse = [0.15, 0.048, 0.020]", "k_diffuse = 0.1", '"k_diffuse": must be a vector of 3 numbers'),
+    ("exponent = 16.0", "n = [0, 0, 1]", '"n": is supplied by the picture for every sample'),
 ]
 
 
