@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from conformance.reference.dark_side import small_powers
 from conformance.reference.direction import frame_from_normal, half_vector
 from conformance.reference.exact import Array, Struct, column, cosine, real, safe_unit, sine, unit
 from conformance.reference.numeric import pow_one_minus, safe_smoothstep
@@ -78,7 +79,9 @@ def strand_cosine_brute(t: Any, l: Any, v: Any, steps: int = 64, rounds: int = 6
 
 def strand_specular(t: Any, l: Any, v: Any, exponent: Any) -> Array:
     """max(0, strand cosine)^exponent; 1 everywhere for exponent 0."""
-    return pow_one_minus(strand_angles(t, l, v)["defect"], exponent)
+    defect = strand_angles(t, l, v)["defect"]
+    value = pow_one_minus(defect, exponent)
+    return small_powers(t, l, v, exponent, strand_cosine(t, l, v), value)
 
 
 def strand_specular_half(t: Any, h: Any, exponent: Any) -> Array:

@@ -1,0 +1,13 @@
+"""Hard cases and random inputs for the functions under test.
+
+load(family)                    the stored points of a family, by role
+families_for(parameters)        the families that fit a function's parameters
+draw(function, family, n, seed) inputs of a function: a family's, "domain_ends" or "uniform"
+coverage(function, family)      how many inputs use up a family
+`python -m conformance.cases` writes the stored families anew, the same to the byte.
+"""
+
+from conformance.cases.drawing import DOMAIN_ENDS, UNIFORM, coverage, draw, families_for, load
+from conformance.cases.registry import FAMILIES
+
+__all__ = ["DOMAIN_ENDS", "FAMILIES", "UNIFORM", "coverage", "draw", "families_for", "load"]
