@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 from conformance.reference.exact import Array, real
 
 DIGITS = 50
-SMALL = 1e-3
+SMALL = 1e-4
 """Below this strand cosine its relative error in float64, 1e-16 / SMALL, counts under a small power."""
 
 
@@ -29,10 +29,14 @@ def precise_cosine(t: Array, l: Array, v: Array) -> float:
 def small_powers(t: Any, l: Any, v: Any, exponent: Any, cosine: Array, value: Array) -> Array:
     """`value` = max(0, cosine)^exponent, computed anew where 0 < exponent < 1 and the cosine is near 0."""
     vectors = [np.broadcast_to(real(x), (*value.shape, 3)).reshape(-1, 3) for x in (t, l, v)]
+    points = np.concatenate(vectors, axis=1)
     power = np.broadcast_to(real(exponent), value.shape).ravel()
     result = value.ravel().copy()
     near_zero = (np.abs(np.broadcast_to(cosine, value.shape)).ravel() < SMALL) & (power > 0.0) & (power < 1.0)
-    for k in np.flatnonzero(near_zero):
-        base = precise_cosine(*(x[k] for x in vectors))
-        result[k] = base ** power[k] if base > 0.0 else 0.0
+    # Hard cases repeat the same points with other exponents: each is computed once.
+    distinct, which = np.unique(points[near_zero], axis=0, return_inverse=True)
+    cosines = np.array([precise_cosine(x[0:3], x[3:6], x[6:9]) for x in distinct])
+    if len(cosines):
+        base = cosines[which.ravel()]
+        result[near_zero] = np.where(base > 0.0, np.abs(base) ** power[near_zero], 0.0)
     return result.reshape(value.shape)
