@@ -1,11 +1,11 @@
 """Bad sources get one sentence with their place.
 
-Plan. data/bad_sources.toml holds the cases. In a case the mark `<!>` stands before the place that the error must
-name; it is taken out before the source is read. Each case says the sentence, or its telling part.
+Plan. data/bad_sources.toml holds the cases. In a case the mark `<!>` stands before the place that the error
+must name; it is taken out before the source is read. Each case says the sentence, or its telling part.
   source   a whole file (after a header line of imports, unless header = false)
   body     the statements of one function of x: X, n: u32, k: i32, d: D, v: V and p: P that returns f32
   files    further sources, path -> text
-Every refusal is a SourceError (a UserError), is one sentence, shows the line and puts a caret under the place.
+Every refusal is a SourceError (a UserError), one sentence, with the line and a caret under the place.
 Reserved names are tried in every position where a source can give a name.
 """
 
