@@ -6,6 +6,7 @@ Vectors have shape (N, 3), scalars (N,).
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +15,7 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 Words = npt.NDArray[np.uint32]
 Struct = dict[str, Array]
-Reference = Callable[..., object]
+Reference = Callable[..., Any]
 
 
 def real(x: npt.ArrayLike) -> Array:
