@@ -8,12 +8,15 @@ only the programs named, so nothing is installed and nothing outside the copy is
   no Python         says which version is needed
   a foreign .venv   is never removed
   no package index  is told apart from a broken pin, and leaves an unfinished .venv that is rebuilt
+  interrupted       gives the .venv that worked before back
 """
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -104,6 +107,7 @@ def test_a_foreign_venv_is_left_alone(checkout: Path) -> None:
     assert (checkout / ".venv" / "mine").exists()
 
 
+@pytest.mark.nightly  # makes a real .venv, which takes many seconds
 def test_an_unreachable_index_is_said_and_an_unfinished_venv_rebuilt(checkout: Path) -> None:
     provide_python(checkout)
     (checkout / ".venv").mkdir()
@@ -121,6 +125,41 @@ def test_an_unreachable_index_is_said_and_an_unfinished_venv_rebuilt(checkout: P
     assert "pip got no answer from its package index" in done.stderr
     assert not (checkout / ".venv" / "half").exists()
     assert (checkout / ".venv" / "vair.setup").read_text() == "unfinished\n"
+
+
+def test_an_interrupted_set_up_gives_the_old_venv_back(checkout: Path) -> None:
+    provide_python(checkout)
+    real = (checkout / "bin" / "python3").readlink()
+    (checkout / "bin" / "python3").unlink()
+    # An interpreter that stops, as a slow disk would, while it makes the .venv.
+    stub = f"""#!/bin/sh
+case "$*" in "-m venv .venv") touch started; exec sleep 60;; esac
+exec {real} "$@"
+"""
+    (checkout / "bin" / "python3").write_text(stub)
+    (checkout / "bin" / "python3").chmod(0o755)
+    for name in ["sh", "sleep", "touch"]:
+        (checkout / "bin" / name).symlink_to(str(shutil.which(name)))
+    (checkout / ".venv").mkdir()
+    (checkout / ".venv" / "vair.setup").write_text("a key of other pins\n")
+    run = subprocess.Popen(
+        ["bash", str(checkout / "dev"), "setup"],
+        env={"PATH": str(checkout / "bin"), "TMPDIR": str(checkout.parent), "VAIR_SYSTEM": "skip"},
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 30
+    while not (checkout / "started").exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    # Not SIGINT, which a background job would have been started to ignore; the script treats both alike.
+    os.killpg(run.pid, signal.SIGTERM)
+    _, said = run.communicate(timeout=30)
+    assert run.returncode == 130
+    assert said == "\ndev: interrupted; the next run carries on cleanly.\n"
+    assert (checkout / ".venv" / "vair.setup").read_text() == "a key of other pins\n"
+    assert not (checkout / ".venv.old").exists()
 
 
 def test_it_is_quick_and_offline_once_set_up() -> None:
