@@ -62,3 +62,17 @@ def test_agrees_with_mpmath(name: str) -> None:
 
 def test_every_function_has_a_form() -> None:
     assert set(FORMS) == set(FUNCTIONS)
+
+
+def test_small_powers_just_above_the_dark_side() -> None:
+    """Strand cosines between 1e-6 and 1e-4, where a small power magnifies an error of 1e-16."""
+    points = cases.load("dark_side_triples")
+    exponent = np.full(len(points["t"]), 0.02, dtype=np.float32)
+    inputs = {**points, "exponent": exponent}
+    value = reference_for("strand_specular")(*inputs.values())
+    close = np.flatnonzero((value > 0.0) & (value < 1e-4**0.02) & ~ambiguous("strand_specular", inputs))
+    assert len(close) > ROWS
+    for k in close:
+        arguments = [exact(row(x, int(k))) for x in inputs.values()]
+        want = FORMS["strand_specular"](*arguments)
+        assert worst("strand_specular", exact(value[k]), want) <= bound("mpmath")
