@@ -14,7 +14,7 @@ def ashikhmin_shirley_power(
 ) -> f32:
     """Density of half vectors per steradian.
 
-    g           l + v, not normalised
+    g           half_sum of l and v
     exponent_x  sharpness across the tangent direction
     exponent_y  sharpness across the bitangent direction
     returns     sqrt((exponent_x + 1) (exponent_y + 1)) / (2 pi) |h.z|^E with E = (exponent_x h.x^2 +

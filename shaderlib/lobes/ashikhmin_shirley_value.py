@@ -3,6 +3,7 @@
 from shaderlib.domains import Direction, Exponent
 from shaderlib.lang import f32, length, max
 from shaderlib.lobes.ashikhmin_shirley_power import ashikhmin_shirley_power
+from shaderlib.lobes.half_sum import half_sum
 
 # Smallest product of |l + v| and a cosine divided by; reached only where both cosines are below 1e-10.
 SMALLEST_DIVISOR = 1.0e-20
@@ -21,7 +22,7 @@ def ashikhmin_shirley_value(l: Direction, v: Direction, exponent_x: Exponent, ex
     form        v.h = |l + v| / 2 for unit vectors
     source      Ashikhmin and Shirley 2000, An Anisotropic Phong BRDF Model
     """
-    g = l + v
+    g = half_sum(l, v)
     lobe = ashikhmin_shirley_power(g, exponent_x, exponent_y)
     value = 0.5 * lobe / max(length(g) * max(l.z, v.z), SMALLEST_DIVISOR)
     return value if l.z > 0.0 and v.z > 0.0 else 0.0

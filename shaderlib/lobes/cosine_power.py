@@ -1,9 +1,9 @@
 """Power of a cosine that is known by its square and by the square of its sine."""
 
-from shaderlib.constants import EXP_LIMIT, SMALLEST_NORMAL
+from shaderlib.constants import EXP_LIMIT
 from shaderlib.domains import Exponent, UnitInterval
-from shaderlib.lang import exp, f32, helper, log, max, min
-from shaderlib.numeric.atanh_series import atanh_series
+from shaderlib.lang import exp, f32, helper, max
+from shaderlib.lobes.log_cosine_squared import log_cosine_squared
 
 
 @helper
@@ -15,13 +15,7 @@ def cosine_power(sine_squared: UnitInterval, cosine_squared: UnitInterval, expon
     exponent        exponent, in [0, 1e5]
     returns         c^exponent, in [0, 1] up to rounding; not below e^-80 = 1.8e-35
     degenerate      exponent = 0: 1
-    form            exp(exponent / 2 log(c^2)), the logarithm from the smaller of the two squares:
-                    -2 atanh(s / (2 - s)) of s = sine_squared below 1/2, log(cosine_squared) above
-    source          identity log(1 - s) = -2 atanh(s / (2 - s))
+    form            exp(exponent log(c^2) / 2), by log_cosine_squared
+    source          elementary
     """
-    core = min(sine_squared, 0.5)
-    z = core / (2.0 - core)
-    log_near = -2.0 * z * atanh_series(z * z)
-    log_far = log(max(cosine_squared, SMALLEST_NORMAL))
-    log_square = log_near if sine_squared < 0.5 else log_far
-    return exp(max(0.5 * exponent * log_square, -EXP_LIMIT))
+    return exp(max(0.5 * exponent * log_cosine_squared(sine_squared, cosine_squared), -EXP_LIMIT))

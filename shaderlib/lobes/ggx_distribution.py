@@ -11,7 +11,7 @@ from shaderlib.lobes.domains import Roughness
 def ggx_distribution(g: Annotated[vec3, Interval(-2.0, 2.0)], alpha_x: Roughness, alpha_y: Roughness) -> f32:
     """Density D(h) of microfacet normals, area per projected area and steradian.
 
-    g           l + v, not normalised; h = g / |g|
+    g           half_sum of l and v; h = g / |g|
     alpha_x     width along the tangent
     alpha_y     width along the bitangent
     returns     1 / (pi alpha_x alpha_y ((h.x / alpha_x)^2 + (h.y / alpha_y)^2 + h.z^2)^2); at most

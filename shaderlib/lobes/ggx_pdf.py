@@ -5,6 +5,7 @@ from shaderlib.lang import f32, max
 from shaderlib.lobes.domains import Roughness
 from shaderlib.lobes.ggx_distribution import ggx_distribution
 from shaderlib.lobes.ggx_stretch import ggx_stretch
+from shaderlib.lobes.half_sum import half_sum
 
 
 def ggx_pdf(l: Direction, v: Direction, alpha_x: Roughness, alpha_y: Roughness) -> f32:
@@ -20,6 +21,6 @@ def ggx_pdf(l: Direction, v: Direction, alpha_x: Roughness, alpha_y: Roughness) 
     form        density G1 D max(v.h, 0) / v.z of the visible normals over 4 v.h; both v.h and v.z cancel
     source      Heitz 2018, Sampling the GGX Distribution of Visible Normals
     """
-    g = l + v
+    g = half_sum(l, v)
     pdf = 0.5 * ggx_distribution(g, alpha_x, alpha_y) / (max(v.z, 0.0) + ggx_stretch(v, alpha_x, alpha_y))
     return pdf if g.z > 0.0 else 0.0

@@ -5,6 +5,7 @@ from shaderlib.lang import f32, max
 from shaderlib.lobes.domains import Roughness
 from shaderlib.lobes.ggx_distribution import ggx_distribution
 from shaderlib.lobes.ggx_stretch import ggx_stretch
+from shaderlib.lobes.half_sum import half_sum
 
 # Smallest divisor; with alpha >= 1e-4 it is reached only where both cosines are below 1e-16.
 SMALLEST_DIVISOR = 1.0e-20
@@ -25,5 +26,5 @@ def ggx_value(l: Direction, v: Direction, alpha_x: Roughness, alpha_y: Roughness
              in Microfacet-Based BRDFs
     """
     mask = l.z * ggx_stretch(v, alpha_x, alpha_y) + v.z * ggx_stretch(l, alpha_x, alpha_y)
-    value = 0.5 * ggx_distribution(l + v, alpha_x, alpha_y) / max(mask, SMALLEST_DIVISOR)
+    value = 0.5 * ggx_distribution(half_sum(l, v), alpha_x, alpha_y) / max(mask, SMALLEST_DIVISOR)
     return value if l.z > 0.0 and v.z > 0.0 else 0.0

@@ -12,7 +12,7 @@ from shaderlib.lobes.cosine_power import cosine_power
 def half_cosine_power(g: Annotated[vec3, Interval(-2.0, 2.0)], exponent: Exponent) -> f32:
     """Power |h.z|^exponent of the half vector h = g / |g|.
 
-    g         l + v, not normalised
+    g         half_sum of l and v
     exponent  exponent, in [0, 1e5]
     returns   in [0, 1] up to rounding; the same for h and -h
     form      squares of sine and cosine from the components of g, so that neither h -> n nor h -> horizon

@@ -10,7 +10,7 @@ from shaderlib.lang import Interval, dot, f32, helper, inverse_sqrt, max, vec3
 def half_jacobian(g: Annotated[vec3, Interval(-2.0, 2.0)]) -> f32:
     """Half vectors per steradian of light directions: 1 / (4 |v.h|) for l mirrored about h.
 
-    g           l + v, not normalised
+    g           half_sum of l and v
     returns     1 / (2 |g|)
     degenerate  l = -v: 0. The half vector is undefined there, and a sampler never draws it
     form        v.h = |l + v| / 2 for unit vectors: the sum is exact where it is small, the dot product is not

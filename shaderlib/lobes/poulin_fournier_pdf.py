@@ -5,6 +5,7 @@ from shaderlib.domains import Direction, Exponent, UnitInterval
 from shaderlib.lang import f32, max
 from shaderlib.lobes.domains import Spread
 from shaderlib.lobes.half_jacobian import half_jacobian
+from shaderlib.lobes.half_sum import half_sum
 from shaderlib.lobes.satin_facet_density import satin_facet_density
 
 
@@ -20,9 +21,9 @@ def poulin_fournier_pdf(
     exponent  p, sharpness of the facets
     returns   (1 - specular) max(l.z, 0) / pi + specular density(h) / (4 |v.h|); integrates to 1 over the
               sphere, below the horizon included
-    form      satin_facet_density and half_jacobian, from l + v
+    form      satin_facet_density and half_jacobian, from half_sum
     source    derived for this library
     """
-    g = l + v
+    g = half_sum(l, v)
     facets = satin_facet_density(g, spread, exponent) * half_jacobian(g)
     return (1.0 - specular) * (INV_PI * max(l.z, 0.0)) + specular * facets

@@ -5,6 +5,7 @@ from typing import Annotated
 from shaderlib.constants import TINY_SQUARE
 from shaderlib.domains import Direction, Exponent
 from shaderlib.lang import Interval, dot, f32, helper, inverse_sqrt, max, vec2
+from shaderlib.lobes.half_sum import half_sum
 from shaderlib.lobes.satin_highlight_range import satin_highlight_range
 from shaderlib.lobes.satin_pair import satin_pair
 
@@ -49,7 +50,7 @@ def satin_highlight(
     form      Gauss-Legendre quadrature over the visible arc, cut to 4.5 deviations around the peak
     source    Gauss-Legendre quadrature
     """
-    g = l + v
+    g = half_sum(l, v)
     h = inverse_sqrt(max(dot(g, g), TINY_SQUARE)) * g
     zone = satin_highlight_range(g, visible, exponent, TWELVE_DEVIATIONS)
     x = zone.x
@@ -77,7 +78,7 @@ def satin_highlight_eight(
     form      Gauss-Legendre quadrature over the visible arc, cut to 3.5 deviations around the peak
     source    Gauss-Legendre quadrature
     """
-    g = l + v
+    g = half_sum(l, v)
     h = inverse_sqrt(max(dot(g, g), TINY_SQUARE)) * g
     zone = satin_highlight_range(g, visible, exponent, EIGHT_DEVIATIONS)
     x = zone.x

@@ -17,7 +17,7 @@ def satin_highlight_range(
 ) -> vec2:
     """Middle and half width of the interval over which the highlight is integrated.
 
-    g           l + v, with g.z > 0
+    g           half_sum of l and v, with g.z > 0
     visible     interval of the arc coordinate that l and v both see
     exponent    sharpness of the facets
     deviations  half width of the interval around the peak in units of 1 / sqrt(exponent + 1)

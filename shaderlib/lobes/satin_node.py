@@ -5,7 +5,7 @@ from typing import Annotated
 from shaderlib.domains import Direction, Exponent
 from shaderlib.lang import Interval, f32, helper, max, min
 from shaderlib.lobes.arc_normal import arc_normal
-from shaderlib.numeric.pow_one_minus import pow_one_minus
+from shaderlib.lobes.cosine_power import cosine_power
 
 
 @helper
@@ -20,10 +20,11 @@ def satin_node(
     h         half vector
     exponent  sharpness of the facets
     returns   at least 0
-    form      1 - (N.h)^2 = h.x^2 + (T.h)^2, T the tangent of the arc: the power sees a small number as it is
+    form      cosine_power of (N.h)^2 and of 1 - (N.h)^2 = h.x^2 + (T.h)^2, T the tangent of the arc
     source    Poulin and Fournier 1990; form derived for this library
     """
     n = arc_normal(xi)
     facing = max(n.x * l.z + n.y * l.y, 0.0) * max(n.x * v.z + n.y * v.y, 0.0)
     across = n.y * h.z - n.x * h.y
-    return facing * pow_one_minus(min(h.x * h.x + across * across, 1.0), 0.5 * exponent)
+    upright = n.x * h.z + n.y * h.y
+    return facing * cosine_power(min(h.x * h.x + across * across, 1.0), upright * upright, exponent)

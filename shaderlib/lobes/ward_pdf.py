@@ -4,6 +4,7 @@ from shaderlib.constants import EXP_LIMIT, INV_TWO_PI, TINY_SQUARE
 from shaderlib.domains import Direction
 from shaderlib.lang import abs, exp, f32, max
 from shaderlib.lobes.domains import Roughness
+from shaderlib.lobes.half_sum import half_sum
 
 # Smallest |g.z| divided by: its square is an ordinary float.
 SMALLEST_HEIGHT = 1.0e-18
@@ -23,7 +24,7 @@ def ward_pdf(l: Direction, v: Direction, alpha_x: Roughness, alpha_y: Roughness)
                 removes both h and the dot product
     source      Walter 2005, Notes on the Ward BRDF; form derived for this library
     """
-    g = l + v
+    g = half_sum(l, v)
     x = g.x / alpha_x
     y = g.y / alpha_y
     stretched = x * x + y * y
