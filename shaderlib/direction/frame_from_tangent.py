@@ -13,7 +13,7 @@ def frame_from_tangent(n: Direction, t: Direction) -> Frame:
     n           normal, kept as it is
     t           wanted tangent; only its part across n counts
     returns     frame with tangent = normalize(t - (t.n) n) and bitangent = n x tangent
-    degenerate  t = n and t = -n: frame_from_normal(n)
+    degenerate  t on the line of n, to 1e-18 rad: frame_from_normal(n)
     form        the bitangent first: n x t = (n - t) x (n + t) / 2 keeps its relative accuracy for t close to
                 n, where t - (t.n) n cancels; the tangent is then a product of orthogonal unit vectors
     source      Gram-Schmidt; form derived for this library

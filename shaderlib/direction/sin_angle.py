@@ -60,7 +60,7 @@ def sin_angle_cosine(a: Direction, b: Direction) -> f32:
     a           first direction
     b           second direction
     returns     sine of the angle, in [0, 1]
-    degenerate  a = b and a = -b: 0 up to 7e-4
+    degenerate  a = b and a = -b: 0 up to 9e-4
     form        sqrt(1 - (a.b)^2), with the difference clamped because float32 unit vectors may have a.b > 1.
                 It cancels for nearly parallel directions: 31 percent off at 1e-3 rad
     source      elementary

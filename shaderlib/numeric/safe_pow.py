@@ -10,7 +10,9 @@ from shaderlib.numeric.atanh_series import atanh_series
 EXP2_LIMIT = 115.0
 
 
-def safe_pow(x: Annotated[f32, Interval(-1.0, 16.0)], y: Annotated[f32, Interval(-1.0e5, 1.0e5)]) -> f32:
+def safe_pow(
+    x: Annotated[f32, Interval(-1.0, 16.0)], y: Annotated[f32, Interval(-28.0, 1.0e5, scale="log")]
+) -> f32:
     """Power x^y that is 0 for negative bases and 1 for exponent 0.
 
     x           base
@@ -33,7 +35,9 @@ def safe_pow(x: Annotated[f32, Interval(-1.0, 16.0)], y: Annotated[f32, Interval
 
 
 @variant("safe_pow")
-def safe_pow_exp2(x: Annotated[f32, Interval(-1.0, 16.0)], y: Annotated[f32, Interval(-1.0e5, 1.0e5)]) -> f32:
+def safe_pow_exp2(
+    x: Annotated[f32, Interval(-1.0, 16.0)], y: Annotated[f32, Interval(-28.0, 1.0e5, scale="log")]
+) -> f32:
     """Power x^y by the built-in logarithm: cheaper, with an error that grows with the exponent.
 
     x           base

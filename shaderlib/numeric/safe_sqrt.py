@@ -5,7 +5,7 @@ from typing import Annotated
 from shaderlib.lang import Interval, f32, max, sqrt
 
 
-def safe_sqrt(x: Annotated[f32, Interval(-1.0, 1.0e30)]) -> f32:
+def safe_sqrt(x: Annotated[f32, Interval(-1.0, 1.0e30, scale="log")]) -> f32:
     """Square root of x, and 0 for negative x.
 
     x           number; what rounding pushed below zero counts as zero

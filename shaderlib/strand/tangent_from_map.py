@@ -3,7 +3,7 @@
 from shaderlib.direction.frame_from_tangent import frame_from_tangent
 from shaderlib.domains import Direction, MapTangent
 from shaderlib.lang import vec3
-from shaderlib.numeric.safe_normalize import safe_normalize_dot
+from shaderlib.numeric.safe_normalize import safe_normalize
 
 
 def tangent_from_map(n: Direction, t: Direction, map_tangent: MapTangent) -> vec3:
@@ -21,4 +21,4 @@ def tangent_from_map(n: Direction, t: Direction, map_tangent: MapTangent) -> vec
     """
     frame = frame_from_tangent(n, t)
     combed = map_tangent.x * frame.tangent + map_tangent.y * frame.bitangent
-    return safe_normalize_dot(combed, frame.tangent)
+    return safe_normalize(combed, frame.tangent)
