@@ -14,9 +14,14 @@ from shaderlib.fakefur.fur_optics import FurOptics
 from shaderlib.fakefur.fur_surface_attenuation import fur_surface_attenuation
 from shaderlib.fakefur.fur_weights import FurWeights
 from shaderlib.fakefur.fur_weights_goldman import fur_weights_goldman, fur_weights_goldman_rational
-from shaderlib.fakefur.fur_weights_slab import fur_weights_slab
+from shaderlib.fakefur.fur_weights_slab import fur_weights_slab, fur_weights_slab_rational
 from shaderlib.lang import Interval, atan2, dot, exp, f32, helper, min, printed, variant, vec3
-from shaderlib.numeric.pow_one_minus import pow_one_minus, pow_one_minus_from4, pow_one_minus_sq16
+from shaderlib.numeric.pow_one_minus import (
+    LARGEST_DEFECT,
+    pow_one_minus,
+    pow_one_minus_from4,
+    pow_one_minus_sq16,
+)
 from shaderlib.numeric.safe_pow import safe_pow
 from shaderlib.numeric.safe_smoothstep import safe_smoothstep
 from shaderlib.numeric.safe_sqrt import safe_sqrt
@@ -102,7 +107,7 @@ def fakefur_shade_from4(
     """Goldman's model for highlights of exponent 4 and more, without a logarithm.
 
     coat     geometry of the coat
-    optics   optical properties of the hairs; exponent >= 4
+    optics   optical properties of the hairs; exponent >= 4 (finite for all)
     t        hair direction, root to tip
     n        surface normal
     l        direction to the light
@@ -133,7 +138,7 @@ def fakefur_shade_rational_sq16(
     """Goldman's model for highlights of exponent 16 and more, without exponential or logarithm.
 
     coat     geometry of the coat
-    optics   optical properties of the hairs; exponent >= 16 (1.3e-3 off at 8)
+    optics   optical properties of the hairs; exponent >= 16 (finite for all, 1.3e-3 off at 8)
     t        hair direction, root to tip
     n        surface normal
     l        direction to the light
@@ -147,11 +152,10 @@ def fakefur_shade_rational_sq16(
     """
     geometry = fur_geometry(coat, t, n, l, v)
     weights = fur_weights_goldman_rational(geometry.depth_view, geometry.depth_light, optics.overlap)
-    highlight = pow_one_minus_sq16(geometry.defect, optics.exponent)
+    highlight = pow_one_minus_sq16(min(geometry.defect, LARGEST_DEFECT), optics.exponent)
     return fakefur_blend(optics, geometry, weights, highlight, light, skin)
 
 
-@variant("fakefur_shade")
 def fakefur_shade_slab(
     coat: FurCoat,
     optics: FurOptics,
@@ -164,8 +168,41 @@ def fakefur_shade_slab(
 ) -> vec3:
     """Fake fur with the exact weights of a uniform coat instead of Goldman's rule: another model.
 
+    coat        geometry of the coat
+    optics      optical properties of the hairs; overlap is not used
+    t           hair direction, root to tip
+    n           surface normal
+    l           direction to the light
+    v           direction to the viewer
+    light       linear RGB of the light at this point
+    skin        reflectance of the skin from l to v, its n.l included
+    returns     linear RGB, in the unit of light; add up over the lights
+    degenerate  as fakefur_shade
+    form        fakefur_shade with fur_weights_slab: one exponential less; brighter rims, darker at grazing
+                light, up to 0.48 of the hair's reflectance
+    source      Goldman 1997, Fake Fur Rendering; weights derived for this library
+    """
+    geometry = fur_geometry(coat, t, n, l, v)
+    weights = fur_weights_slab(geometry.depth_view, geometry.depth_light)
+    highlight = pow_one_minus(geometry.defect, optics.exponent)
+    return fakefur_blend(optics, geometry, weights, highlight, light, skin)
+
+
+@variant("fakefur_shade_slab")
+def fakefur_shade_slab_rational_sq16(
+    coat: FurCoat,
+    optics: FurOptics,
+    t: Direction,
+    n: Direction,
+    l: Direction,
+    v: Direction,
+    light: LightColour,
+    skin: Colour,
+) -> vec3:
+    """Fake fur of a uniform coat for highlights of exponent 16 and more, without exponential or logarithm.
+
     coat     geometry of the coat
-    optics   optical properties of the hairs; overlap is not used
+    optics   optical properties of the hairs; exponent >= 16 (finite for all, 1.3e-3 off at 8)
     t        hair direction, root to tip
     n        surface normal
     l        direction to the light
@@ -173,13 +210,12 @@ def fakefur_shade_slab(
     light    linear RGB of the light at this point
     skin     reflectance of the skin from l to v, its n.l included
     returns  linear RGB, in the unit of light
-    form     fakefur_shade with fur_weights_slab: one exponential less; brighter rims, darker at grazing
-             light
-    source   Goldman 1997, Fake Fur Rendering; weights derived for this library
+    form     fakefur_shade_slab with rational weights and a highlight by four squarings
+    source   Goldman 1997, Fake Fur Rendering; fits made for this library
     """
     geometry = fur_geometry(coat, t, n, l, v)
-    weights = fur_weights_slab(geometry.depth_view, geometry.depth_light)
-    highlight = pow_one_minus(geometry.defect, optics.exponent)
+    weights = fur_weights_slab_rational(geometry.depth_view, geometry.depth_light)
+    highlight = pow_one_minus_sq16(min(geometry.defect, LARGEST_DEFECT), optics.exponent)
     return fakefur_blend(optics, geometry, weights, highlight, light, skin)
 
 

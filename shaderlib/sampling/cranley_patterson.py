@@ -1,12 +1,17 @@
 """Shift of a point set, modulo 1."""
 
+from typing import Annotated
+
 from shaderlib.constants import ONE_BELOW
-from shaderlib.domains import UnitInterval, UnitSquare
-from shaderlib.lang import f32, helper, min, vec2
+from shaderlib.lang import Interval, f32, helper, min, vec2
+
+# Numbers in [0, 1), one or two.
+Fraction = Annotated[f32, Interval(0.0, ONE_BELOW)]
+Fractions = Annotated[vec2, Interval(0.0, ONE_BELOW)]
 
 
 @helper
-def wrapped_sum(a: UnitInterval, b: UnitInterval) -> f32:
+def wrapped_sum(a: Fraction, b: Fraction) -> f32:
     """Sum modulo 1 of two numbers in [0, 1).
 
     a        multiple of 2^-24 for an exact result
@@ -20,7 +25,7 @@ def wrapped_sum(a: UnitInterval, b: UnitInterval) -> f32:
     return min(d + 1.0 if d < 0.0 else d, ONE_BELOW)
 
 
-def cranley_patterson(u: UnitSquare, shift: UnitSquare) -> vec2:
+def cranley_patterson(u: Fractions, shift: Fractions) -> vec2:
     """Rotation of a point on the unit torus: the same point set, decorrelated from pixel to pixel.
 
     u        point in [0, 1)^2

@@ -14,7 +14,7 @@ def fin_normal(edge: Annotated[vec3, Length(1.0e-6, 1.0e6)], n: Direction) -> ve
     edge        difference of the two vertices of the edge, of any length
     n           surface normal
     returns     unit vector along edge x n
-    degenerate  edge = 0 or edge parallel to n: a unit vector perpendicular to n
+    degenerate  edge = 0: a unit vector perpendicular to n; edge parallel to n: any unit vector
     form        one cross product; its direction is as good as the edge is far from n, about 1e-7 /
                 sin(edge, n)
     source      Lengyel et al. 2001, Real-Time Fur over Arbitrary Surfaces

@@ -13,7 +13,7 @@ Position = Annotated[vec3, Interval(-1.0e3, 1.0e3)]
 CoatLength = Annotated[f32, Interval(0.0, 1.0e2, scale="log")]
 
 # Displacement of the hair tips, relative to the length of the hair.
-Bend = Annotated[vec3, Length(0.0, 16.0)]
+Bend = Annotated[vec3, Length(0.0, 4.0)]
 
 
 def shell_offset(

@@ -1,10 +1,15 @@
 """Light reflected by a shell texel whose hairs stand along the normal."""
 
+from typing import Annotated
+
 from shaderlib.domains import Colour, Direction, Exponent
-from shaderlib.lang import clamp, dot, printed, variant, vec3
+from shaderlib.lang import Interval, clamp, dot, f32, printed, variant, vec3
 from shaderlib.numeric.pow_one_minus import pow_one_minus
 from shaderlib.numeric.safe_pow import safe_pow
 from shaderlib.shells.shell_sine_power import shell_sine_power
+
+# Exponents for which the rounding of a squared cosine does not show near the hair.
+ExponentFrom2 = Annotated[f32, Interval(2.0, 1.0e5, scale="log")]
 
 
 def shell_shade(
@@ -40,19 +45,19 @@ def shell_shade_cosine(
     l: Direction,
     h: Direction,
     k_diffuse: Colour,
-    p_diffuse: Exponent,
+    p_diffuse: ExponentFrom2,
     k_specular: Colour,
-    p_specular: Exponent,
+    p_specular: ExponentFrom2,
 ) -> vec3:
-    """Reflectance of a shell from two cosines: exponents of 2 and more.
+    """Reflectance of a shell from two cosines, for exponents of 2 and more.
 
     n           surface normal, which is the hair direction
     l           direction to the light
     h           half vector of light and viewer
     k_diffuse   diffuse colour
-    p_diffuse   diffuse exponent; below 2 the error near n = l grows, 5e-4 at exponent 1
+    p_diffuse   diffuse exponent, at least 2; at exponent 1 the error near n = l would be 5e-4
     k_specular  colour of the highlight
-    p_specular  exponent of the highlight
+    p_specular  exponent of the highlight, at least 2
     returns     k_diffuse sin(n, l)^p_diffuse + k_specular sin(n, h)^p_specular
     form        (1 - cos^2)^(p/2) by pow_one_minus: no sine, and as good as shell_shade for large exponents
     source      Romanick 2010, VGP352 week 6, "Lighting Shells and Fins", its identity put right

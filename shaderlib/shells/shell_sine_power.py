@@ -14,7 +14,7 @@ def shell_sine_power(n: Direction, w: Direction, p: Exponent) -> f32:
     w           direction to the light, or half vector
     p           exponent, in [0, 1e5]
     returns     sin(n, w)^p, in [0, 1]; not below e^-80 = 1.8e-35 unless it is 0
-    degenerate  w = n and w = -n: 0 for p > 0; p = 0: 1 everywhere
+    degenerate  w = n and w = -n, and sines below 1e-19: 0 for p > 0; p = 0: 1 everywhere
     form        exp(p / 2 log sin^2). Near the hair sin^2 comes from the cross product of sum and
                 difference, with relative accuracy (1 - cos^2 has none, and sin itself would err by 3e-4);
                 across the hair its logarithm is that of 1 - cos^2 with a small cosine, which large
