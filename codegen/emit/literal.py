@@ -11,10 +11,9 @@ from codegen.ir.types import BOOL, F32, U32
 
 def shortest(value: float) -> str:
     """The shortest decimal text that rounds to this float32."""
-    packed = struct.pack("<f", value)
     for digits in range(1, 10):
         text = f"{value:.{digits}g}"
-        if struct.pack("<f", float(text)) == packed:
+        if _reads_as(text, value):
             break
     number = float(text)
     plain = repr(number)
@@ -22,6 +21,13 @@ def shortest(value: float) -> str:
         mantissa, exponent = f"{number:.{digits - 1}e}".split("e")
         return f"{mantissa}e{int(exponent)}"
     return plain
+
+
+def _reads_as(text: str, value: float) -> bool:
+    try:
+        return struct.pack("<f", float(text)) == struct.pack("<f", value)
+    except OverflowError:  # few digits of a large number may round up beyond the largest float32
+        return False
 
 
 def literal(const: Const, dialect: Dialect) -> str:

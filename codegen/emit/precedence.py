@@ -6,6 +6,8 @@ never lets an operand of the same level stand bare on the right, so a + (b + c) 
 
 from __future__ import annotations
 
+import math
+
 from codegen.ir import nodes as ir
 
 _PLAIN = frozenset({"primary", "unary"})
@@ -54,7 +56,7 @@ def level(e: ir.Expr) -> str:
             return LEVEL[e.op]
         case ir.Unary():
             return "unary"
-        case ir.Const() if not isinstance(e.value, bool) and e.value < 0:
+        case ir.Const() if not isinstance(e.value, bool) and math.copysign(1.0, e.value) < 0.0:
             return "unary"
         case ir.Select():
             return "conditional"
