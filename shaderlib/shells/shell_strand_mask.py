@@ -28,24 +28,28 @@ def shell_strand_mask(
     density    cells, and hairs, per unit of uv along each axis; cut to a whole number, at least 1
     thickness  diameter of a full-length hair at the skin, as a share of the cell; cut to multiples of 2^-14
     seed       any number; another one gives another coat
-    returns    1 inside a hair, 0 outside. The hair of a cell ends at a random height h1 in [1/2, 1), its
-               radius is thickness (h1 - height) / 2 cells, and its random centre keeps it inside its cell
-    form       with u = floor(uv 2^20) floor(density) modulo 2^32, the cell is u >> 20 (the pattern repeats
-               every 4096 cells) and the place in it (u >> 5) & 32767. (x, y, z) = pcg3d(cell, seed) >> 17
-               give the centre R + (x (32768 - 2 R) >> 15), R = floor(thickness 2^14), the tip 32768 + z and
-               the radius R max(tip - floor(height 2^16), 0) >> 16; the test is strict, so a radius of 0
-               covers nothing
+    returns    1 inside a hair, 0 outside. Odd rows are shifted by half a cell. The hair of a cell ends at a
+               random height tip in [1/2, 1), its radius is thickness (tip - height) / 2 cells, and its
+               random centre keeps it inside its cell
+    form       whole numbers modulo 2^32. y = floor(uv.y 2^20) floor(density), x = floor(uv.x 2^20)
+               floor(density) + 2^19 ((y >> 20) & 1); the cell is (x >> 20, y >> 20), so the pattern repeats
+               every 4096 cells, and the place in it ((x >> 5) & 32767, (y >> 5) & 32767). (a, b, c) =
+               pcg3d(cell, seed) >> 17, tip = 32768 + c, radius(h) = floor(thickness 2^14) max(tip - h, 0)
+               >> 16, and the centre is radius(0) + (a (32768 - 2 radius(0)) >> 15), with b likewise.
+               Inside: squared distance < radius(floor(height 2^16))^2
     source     shell textures: Lengyel et al. 2001; this pattern was made for this library
     """
     cells = u32(max(density, 1.0))
-    across = u32(i32(floor(uv.x * COORDINATE_STEPS))) * cells
     along = u32(i32(floor(uv.y * COORDINATE_STEPS))) * cells
+    half_cell = ((along >> 20) & 1) << 19
+    across = u32(i32(floor(uv.x * COORDINATE_STEPS))) * cells + half_cell
     random = pcg3d(uvec3(across >> 20, along >> 20, seed))
-    widest = u32(clamp(thickness, 0.0, 1.0) * 16384.0)
-    room = CELL_STEPS - 2 * widest
-    from_left = ((across >> 5) & 32767) - (widest + (((random.x >> 17) * room) >> 15))
-    from_top = ((along >> 5) & 32767) - (widest + (((random.y >> 17) * room) >> 15))
     tip = CELL_STEPS + (random.z >> 17)
     reached = min(u32(clamp(height, 0.0, 1.0) * 65536.0), tip)
+    widest = u32(clamp(thickness, 0.0, 1.0) * 16384.0)
+    base = (widest * tip) >> 16
     radius = (widest * (tip - reached)) >> 16
+    room = CELL_STEPS - 2 * base
+    from_left = ((across >> 5) & 32767) - (base + (((random.x >> 17) * room) >> 15))
+    from_top = ((along >> 5) & 32767) - (base + (((random.y >> 17) * room) >> 15))
     return 1.0 if from_left * from_left + from_top * from_top < radius * radius else 0.0
