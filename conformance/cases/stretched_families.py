@@ -1,4 +1,4 @@
-"""Directions that are not quite unit: never drawn, since they lie outside every domain, but loaded by name."""
+"""Directions that are not quite unit: outside every domain, so never drawn, but loaded by name."""
 
 from __future__ import annotations
 
