@@ -81,8 +81,9 @@ def fakefur_shade(
     light       linear RGB of the light at this point
     skin        reflectance of the skin from l to v, its n.l included
     returns     linear RGB, in the unit of light; add up over the lights
-    degenerate  n.v <= 0 or n.l <= 0: that path through the coat is opaque; t = +-l and t = +-v: see
-                fur_geometry; exponent 0: the highlight is 1 everywhere
+    degenerate  n.v <= 0 or n.l <= 0: that path through the coat is opaque; t = +-l or t = +-v: that sine,
+                its depth and the azimuth cosine are 0; exponent 0: the highlight is 1 everywhere; cos_dark
+                = cos_lit: a hard step
     form        both cross products once, for sines, azimuth and highlight: faster than the obvious form and
                 accurate at every angle. Shadow takes the opacity along the light, visibility along the view
     source      Goldman 1997, Fake Fur Rendering; Romanick 2010, VGP352 week 6, with its misprints put right

@@ -34,17 +34,18 @@ class FurGeometry:
 def fur_geometry(coat: FurCoat, t: Direction, n: Direction, l: Direction, v: Direction) -> FurGeometry:
     """Angles and optical depths of a coat for one light.
 
-    coat     geometry of the coat
-    t        hair direction, root to tip
-    n        surface normal
-    l        direction to the light
-    v        direction to the viewer
-    returns  see FurGeometry; the values are those of strand_angles, strand_azimuth_cosine and
-             fur_optical_depth
-    form     (t - l) x (t + l) = 2 t x l keeps its relative accuracy at every angle, and with both cross
-             products at hand sines, azimuth and defect cost less than from cosines, which lose everything
-             near the hair
-    source   Goldman 1997, Fake Fur Rendering; forms derived for this library
+    coat        geometry of the coat
+    t           hair direction, root to tip
+    n           surface normal
+    l           direction to the light
+    v           direction to the viewer
+    returns     see FurGeometry; the values are those of strand_angles, strand_azimuth_cosine and
+                fur_optical_depth
+    degenerate  t = +-l or t = +-v: that sine, its depth and the azimuth cosine are 0
+    form        (t - l) x (t + l) = 2 t x l keeps its relative accuracy at every angle, and with both cross
+                products at hand sines, azimuth and defect cost less than from cosines, which lose
+                everything near the hair
+    source      Goldman 1997, Fake Fur Rendering; forms derived for this library
     """
     across_l = cross(t - l, t + l)
     across_v = cross(t - v, t + v)
