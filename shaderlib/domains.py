@@ -16,8 +16,8 @@ UnitSquare = Annotated[vec2, Interval(0.0, 1.0)]
 UnitInterval = Annotated[f32, Interval(0.0, 1.0)]
 Cosine = Annotated[f32, Interval(-1.0, 1.0)]
 
-# Exponent of a highlight.
-Exponent = Annotated[f32, Interval(0.0, 1.0e5, scale="log")]
+# Exponent of a highlight. Below 1/2 no scene has one, and the lobe's edge is too steep for any bound.
+Exponent = Annotated[f32, Interval(0.0, 1.0e5, scale="log", least=0.5)]
 
 # Exponents that the cheap power forms accept; below the lower end their error grows quickly.
 ExponentFrom4 = Annotated[f32, Interval(4.0, 1.0e5, scale="log")]

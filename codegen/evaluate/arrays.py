@@ -45,7 +45,7 @@ def _numpy_namespace(floats: type[np.generic]) -> SimpleNamespace:
     def to_float(x: Array) -> Array:
         return _bits_to_float(x).astype(floats)
 
-    names = "abs minimum maximum floor sqrt exp exp2 log log2 sin cos arctan2 stack"
+    names = "abs minimum maximum divide floor sqrt exp exp2 log log2 sin cos arctan2 stack"
     logic = "logical_and logical_or logical_not"
     functions = {name: getattr(np, name) for name in f"{names} {logic}".split()}
     return SimpleNamespace(**functions, float_to_bits=_float_to_bits, bits_to_float=to_float)
@@ -104,7 +104,7 @@ def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Val
             raise UserError(f"{where} lacks {', '.join(missing)}")
         return {n: _convert(f"{where}.{n}", t, given[n], arithmetic) for n, t in fields.items()}
     element = type_.element if isinstance(type_, Vector) else type_
-    a = np.asarray(given)
+    a = _numbers(where, element, given)
     if arithmetic.floats is np.object_ and element == F32:
         a = np.frompyfunc(arithmetic.literal, 1, 1)(a.astype(np.float64) if a.dtype != object else a)
         a = np.asarray(a, dtype=object)
@@ -116,6 +116,22 @@ def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Val
     if a.ndim != 1 + len(shape) or a.shape[1:] != shape:
         expected = "(N,)" if not shape else f"(N, {shape[0]})"
         raise UserError(f"{where} has shape {a.shape}, but {type_.name} needs {expected}")
+    return a
+
+
+def _numbers(where: str, element: Scalar, given: Any) -> Array:
+    """The given value as an array of numbers that the element type can hold."""
+    try:
+        a = np.asarray(given)
+    except ValueError:
+        raise UserError(f"{where} is not an array: its rows differ in length") from None
+    allowed = {F32: "fiubO", BOOL: "bO"}.get(element, "iubO")
+    if a.size and a.dtype.kind not in allowed:
+        raise UserError(f"{where} holds {a.dtype.name}, but {element.name} is needed")
+    if element in (I32, U32) and a.size:
+        low, high = (0, 2**32 - 1) if element == U32 else (-(2**31), 2**31 - 1)
+        if a.min() < low or a.max() > high:
+            raise UserError(f"{where} holds a number outside [{low}, {high}]")
     return a
 
 

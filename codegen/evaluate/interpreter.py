@@ -6,6 +6,7 @@ an `If` are computed for all lanes and chosen lane by lane; lanes that have retu
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,7 +15,7 @@ import numpy as np
 from codegen.evaluate.arrays import Arithmetic, Array, Value, choose, convert_inputs
 from codegen.evaluate.arrays import arithmetic as find_arithmetic
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, U32, Scalar, Struct, Type, Vector
+from codegen.ir.types import F32, I32, U32, Scalar, Struct, Type, Vector
 from codegen.library import Library
 from codegen.ops import BUILTINS, OPERATORS
 
@@ -157,7 +158,10 @@ class _Frame:
         if type_ == F32 and self.arithmetic.name == "mpmath":
             return np.asarray([self.arithmetic.literal(int(x)) for x in value], dtype=object)
         if value.dtype == object:
-            return np.asarray([int(x) for x in value]).astype(self.arithmetic.dtype(type_))
+            whole = [int(x) if abs(x) < math.inf else 0 for x in value]
+            low = -(2**31) if type_ == I32 else 0
+            clipped = [min(max(x, low), low + 2**32 - 1) for x in whole]  # lanes that a branch does not take
+            return np.asarray(clipped, np.int64).astype(self.arithmetic.dtype(type_))
         if type_ == U32 and value.dtype.kind == "f":
             return value.astype(np.float64).astype(np.int64).astype(np.uint32)
         return value.astype(self.arithmetic.dtype(type_))

@@ -13,6 +13,15 @@ import numpy.typing as npt
 Array = npt.NDArray[Any]
 
 
+def _divide(a: Any, b: Any) -> Any:
+    """a / b, with IEEE's values where b is 0: lanes that a branch does not take get here."""
+    if b != 0:
+        return a / b
+    if a == 0 or mpmath.isnan(a):
+        return mpmath.nan
+    return mpmath.inf if a > 0 else mpmath.ninf
+
+
 def namespace() -> SimpleNamespace:
     def each(function: Callable[..., Any], arity: int = 1) -> Callable[..., Any]:
         found: Callable[..., Any] = np.frompyfunc(function, arity, 1)
@@ -28,7 +37,8 @@ def namespace() -> SimpleNamespace:
         minimum=each(min, 2),
         maximum=each(max, 2),
         floor=each(mpmath.floor),
-        sqrt=each(mpmath.sqrt),
+        divide=each(_divide, 2),
+        sqrt=each(lambda x: mpmath.sqrt(x) if x >= 0 else mpmath.nan),
         exp=each(mpmath.exp),
         exp2=each(lambda x: mpmath.power(2, x)),
         log=each(lambda x: mpmath.log(x) if x > 0 else mpmath.mpf("-inf")),
@@ -40,6 +50,6 @@ def namespace() -> SimpleNamespace:
         logical_and=np.logical_and,
         logical_or=np.logical_or,
         logical_not=np.logical_not,
-        float_to_bits=lambda x: np.asarray(x, np.float32).view(np.uint32),
+        float_to_bits=lambda x: np.asarray(np.asarray(x, np.float64), np.float32).view(np.uint32),
         bits_to_float=to_precise,
     )

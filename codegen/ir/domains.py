@@ -9,11 +9,16 @@ SCALES = ("linear", "log")
 
 @dataclass(frozen=True)
 class Interval:
-    """A number (or every component of a vector) in [low, high]; `scale` says how to sample it."""
+    """A number (or every component of a vector) in [low, high].
+
+    `scale` says how to sample it, linearly or by magnitude ("log"); by magnitude, random points start at
+    `least` (0: as small as any), while tests of the ends still use `low`.
+    """
 
     low: float
     high: float
     scale: str = "linear"
+    least: float = 0.0
 
     def describe(self) -> str:
         return f"in [{number(self.low)}, {number(self.high)}]"

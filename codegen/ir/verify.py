@@ -52,7 +52,9 @@ class _Checker:
         self, body: tuple[ir.Stmt, ...], outer: Mapping[str, Type], outer_mutable: frozenset[str]
     ) -> None:
         scope, mutable = dict(outer), set(outer_mutable)
-        for s in body:
+        for position, s in enumerate(body):
+            if position > 0 and self.returns(body[:position]):
+                raise self.fail("a statement that is never reached")
             match s:
                 case ir.Let():
                     if s.name in scope:
@@ -72,6 +74,8 @@ class _Checker:
                     self.block(s.then, scope, frozenset(mutable))
                     self.block(s.orelse, scope, frozenset(mutable))
                 case ir.For():
+                    if s.name in scope:
+                        raise self.fail(f'"{s.name}" is defined twice')
                     self.block(s.body, {**scope, s.name: I32}, frozenset(mutable))
                 case ir.Return():
                     self.expr(s.value, scope)
@@ -95,16 +99,17 @@ class _Checker:
             case ir.Var():
                 return scope.get(e.name)
             case ir.Unary() | ir.Binary():
-                return OPERATORS[e.op].result(types)
+                return OPERATORS[e.op].result(types) if e.op in OPERATORS else None
             case ir.Builtin():
-                return BUILTINS[e.op].result(types)
+                return BUILTINS[e.op].result(types) if e.op in BUILTINS else None
             case ir.Call():
                 found = self.signature(e.function)
                 return found[1] if found is not None and found[0] == types else None
             case ir.Convert():
                 return e.type if types[0] in (F32, I32, U32) and e.type in (F32, I32, U32) else None
             case ir.Select():
-                return types[1] if types[0] == BOOL and types[1] == types[2] else None
+                same = types[0] == BOOL and types[1] == types[2] and not isinstance(types[1], Struct)
+                return types[1] if same else None
             case ir.Member():
                 found_field = types[0].field(e.name) if isinstance(types[0], Struct) else None
                 return found_field.type if found_field else None

@@ -61,7 +61,7 @@ BUILTINS = (
     Op(
         "normalize",
         same(FLOAT_VECTORS, 1),
-        lambda m, x: x / m.sqrt(_dot(m, x, x))[..., None],
+        lambda m, x: m.divide(x, m.sqrt(_dot(m, x, x))[..., None]),
         promise(Inherited("x / length(x)"), Ulp(5)),
         "root",
         (((0.0, 3.0, 4.0),),),

@@ -57,8 +57,11 @@ def magnitudes(stream: Stream, n: int, low: float, high: float) -> F64:
     return np.clip(np.exp2(exponent), low, high)
 
 
-def signed_logarithmic(stream: Stream, n: int, low: float, high: float) -> F64:
-    """Magnitudes of any order within [low, high]; an end at 0 is approached down to 1e-30, mostly to 1e-6."""
+def signed_logarithmic(stream: Stream, n: int, low: float, high: float, least: float = 0.0) -> F64:
+    """Magnitudes of any order within [low, high].
+
+    An end at 0 is approached down to `least`, or, where that is 0, down to 1e-30 and mostly to 1e-6.
+    """
     largest = max(abs(low), abs(high))
     if low > 0.0:
         return magnitudes(stream, n, low, high)
@@ -67,6 +70,7 @@ def signed_logarithmic(stream: Stream, n: int, low: float, high: float) -> F64:
     if largest == 0.0:
         return np.zeros(n)
     floor = np.where(stream.uniform(n) < 0.75, 1e-6 * min(largest, 1.0), TINY)
+    floor = np.where(least > 0.0, least, floor)
     size = np.exp2(np.log2(floor) + stream.uniform(n) * (np.log2(largest) - np.log2(floor)))
     sign = np.where(stream.uniform(n) < 0.5, -1.0, 1.0) if low < 0.0 < high else np.sign(low + high)
     value = np.where(stream.uniform(n) < 0.01, 0.0, size * sign)
@@ -79,7 +83,7 @@ def uniform_f32(stream: Stream, n: int, domain: Any) -> F32:
         return single(signed_logarithmic(stream, n, -HUGE, HUGE))
     first, last = inward(domain.low, domain.high)
     if domain.scale == "log":
-        value = signed_logarithmic(stream, n, float(first), float(last))
+        value = signed_logarithmic(stream, n, float(first), float(last), getattr(domain, "least", 0.0))
     else:
         value = stream.uniform(n, float(first), float(last))
     return np.clip(single(value), first, last)

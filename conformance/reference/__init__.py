@@ -19,9 +19,10 @@ from typing import Any
 
 import numpy as np
 
+from conformance.reference import shells
 from conformance.reference.exact import Mask
 
-__all__ = ["REFERENCES", "ambiguous", "reference_for"]
+__all__ = ["PROPERTY_ONLY", "REFERENCES", "ambiguous", "reference_for"]
 
 
 def joined(table: str) -> dict[str, Callable[..., Any]]:
@@ -38,6 +39,8 @@ def joined(table: str) -> dict[str, Callable[..., Any]]:
 
 REFERENCES = joined("REFERENCES")
 PREDICATES = joined("AMBIGUOUS")
+PROPERTY_ONLY = shells.PROPERTY_ONLY
+"""Functions that no formula fixes: they are tested by what they must do, and for agreement between targets."""
 
 
 def reference_for(name: str, base: str | None = None) -> Callable[..., Any]:

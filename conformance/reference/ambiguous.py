@@ -14,7 +14,7 @@ import numpy as np
 
 from conformance.reference.direction import OPPOSITE, half_vector
 from conformance.reference.exact import Mask, length, real, sine
-from conformance.reference.strand import strand_cosine, tangent_shift
+from conformance.reference.strand import strand_cosine, tangent_from_map, tangent_shift
 from conformance.reference.sums import direction_sum, dot
 
 Inputs = Mapping[str, Any]
@@ -127,12 +127,19 @@ def scheuermann_steps(inputs: Inputs) -> Mask:
     return np.asarray(found, dtype=np.bool_)
 
 
+def brushed_steps(inputs: Inputs) -> Mask:
+    """No tangent on the surface, or a step of the highlight of the tangent that the map gives."""
+    tangent = tangent_from_map(inputs["n"], inputs["t"], inputs["map_tangent"])
+    return np.asarray(tangent_along_normal(inputs) | specular_step({**inputs, "t": tangent}))
+
+
 AMBIGUOUS: dict[str, Callable[[Inputs], Mask]] = {
     "safe_smoothstep": smoothstep_edges,
     "half_vector": lambda inputs: nearly_opposite(inputs["l"], inputs["v"]),
     "frame_from_tangent": tangent_along_normal,
     "strand_specular": specular_step,
     "banks_shade": specular_step,
+    "brushed_shade": brushed_steps,
     "kajiya_kay_shade": specular_step,
     "strand_specular_half": half_specular_step,
     "strand_azimuth_cosine": azimuth_at_pole,

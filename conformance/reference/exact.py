@@ -70,8 +70,9 @@ def cosine(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
 
 
 def sine(a: npt.ArrayLike, b: npt.ArrayLike) -> Array:
-    """Sine of the angle between two float32 vectors, with flat relative error at every angle."""
-    return np.minimum(length(np.cross(real(a), real(b))) / (length(a) * length(b)), 1.0)
+    """Sine of the angle between two float32 vectors, flat in relative error; 0 for a zero vector."""
+    sizes = length(a) * length(b)
+    return np.minimum(length(np.cross(real(a), real(b))) / np.where(sizes > 0.0, sizes, 1.0), 1.0)
 
 
 def safe_unit(x: npt.ArrayLike, fallback: npt.ArrayLike) -> Array:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from conformance.reference.ambiguous import SMALLEST_NORMAL, Inputs
+from conformance.reference.ambiguous import ROUNDING, SMALLEST_NORMAL, Inputs
 from conformance.reference.exact import Array, Mask, Reference, Struct, length, real, stack, unit
 
 PARABOLIC_FLOOR = 1e-6
@@ -84,6 +84,7 @@ def latlong_solid_angle(v: Array, width: Array, height: Array) -> Array:
     """Exact area of the texel centred at row coordinate v: width of a band of cosines times its share of
     azimuth."""
     v, rows = real(v), real(height)
+    v = np.minimum(v, 1.0 - v)  # exact, and sin(pi) in float64 is not 0
     # cos(pi (v - 1/2H)) - cos(pi (v + 1/2H)) by the product formula, which does not cancel
     band = 2.0 * np.sin(np.pi * v) * np.sin(np.pi / (2.0 * rows))
     return 2.0 * np.pi / real(width) * band
@@ -151,10 +152,16 @@ def flushed_component(inputs: Inputs) -> Mask:
     return np.asarray(np.any((w > 0.0) & (w < SMALLEST_NORMAL), axis=-1), dtype=np.bool_)
 
 
+def flushed_products(inputs: Inputs) -> Mask:
+    """Both samples * density may be flushed to zero, and then neither strategy reaches the direction."""
+    products = [real(inputs[f"samples_{k}"]) * real(inputs[f"pdf_{k}"]) for k in "ab"]
+    larger = np.maximum(*products)
+    return np.asarray((larger > 0.0) & (larger <= 2.0 * SMALLEST_NORMAL), dtype=np.bool_)
+
+
 def between_faces(inputs: Inputs) -> Mask:
-    """`back` strictly between 0 and 1 names no hemisphere."""
-    back = real(inputs["back"])
-    return np.asarray((back > 0.0) & (back < 1.0), dtype=np.bool_)
+    """`back` at 1/2 names no hemisphere."""
+    return np.asarray(np.abs(real(inputs["back"]) - 0.5) <= ROUNDING, dtype=np.bool_)
 
 
 AMBIGUOUS: dict[str, Callable[[Inputs], Mask]] = {
@@ -162,6 +169,8 @@ AMBIGUOUS: dict[str, Callable[[Inputs], Mask]] = {
     "octahedral_encode": flushed_component,
     "latlong_uv": flushed_component,
     "dual_paraboloid_direction": between_faces,
+    "mis_balance": flushed_products,
+    "mis_power": flushed_products,
 }
 
 REFERENCES: dict[str, Reference] = {
@@ -169,7 +178,6 @@ REFERENCES: dict[str, Reference] = {
     for f in (
         parabolic_uv, parabolic_direction, dual_paraboloid_uv, dual_paraboloid_direction,
         dual_paraboloid_solid_angle, octahedral_encode, octahedral_decode, octahedral_solid_angle, latlong_uv,
-        latlong_direction,
-        latlong_solid_angle, cube_solid_angle, lod_from_pdf, mis_balance, mis_power,
+        latlong_direction, latlong_solid_angle, cube_solid_angle, lod_from_pdf, mis_balance, mis_power,
     )
 }  # fmt: skip

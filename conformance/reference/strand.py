@@ -214,6 +214,21 @@ def coat_transmittance(extinction: Any, path: Any) -> Array:
     return np.exp(-np.minimum(real(extinction) * real(path), LARGEST_EXPONENT))
 
 
+def brushed_shade(
+    n: Any,
+    t: Any,
+    map_tangent: Any,
+    l: Any,
+    v: Any,
+    k_diffuse: Any,
+    k_specular: Any,
+    exponent: Any,
+) -> Array:
+    """Isidoro and Brennan 2002: the surface lit as strands along the tangent that a map gives per texel."""
+    tangent = tangent_from_map(n, t, map_tangent)
+    return banks_shade(tangent, n, l, v, k_diffuse, k_specular, exponent)
+
+
 REFERENCES: dict[str, Callable[..., Any]] = {
     "strand_angles": strand_angles,
     "strand_diffuse": strand_diffuse,
@@ -225,6 +240,7 @@ REFERENCES: dict[str, Callable[..., Any]] = {
     "strand_azimuth_cosine": strand_azimuth_cosine,
     "inherited_shadow": inherited_shadow,
     "banks_shade": banks_shade,
+    "brushed_shade": brushed_shade,
     "kajiya_kay_shade": kajiya_kay_shade,
     "tangent_from_map": tangent_from_map,
     "tangent_shift": tangent_shift,

@@ -1,0 +1,36 @@
+"""Every public function on every target, and in the evaluator.
+
+Plan. For each function and target:
+  values      random points of the stated domain and every family of hard cases that fits its parameters, each
+              result against the independent reference, under the declared bounds of shaderlib/*/bounds.toml
+  finiteness  every input, also where no bound applies
+  coverage    the function declares a bound and has a reference, and its bounds apply to some input
+Not covered here: speed (conformance.bench), pictures (conformance.picture).
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from codegen.library import load_library
+from conformance.check.engine import Backend, backend, check_function
+
+FUNCTIONS = list(load_library().public)
+
+
+def judge(name: str, on: Backend) -> None:
+    result = check_function(load_library(), name, on)
+    if not result.passed:
+        told = [result.broken, *("\n".join(f.lines()) for f in result.failures)]
+        pytest.fail("\n\n".join(filter(None, told)), pytrace=False)
+    assert any(bound.lanes for bound in result.bounds), f"no input lies inside a bound of {name}"
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_function_keeps_its_bounds(target: str, name: str) -> None:
+    judge(name, backend(target))
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_evaluator_keeps_the_bounds(name: str) -> None:
+    judge(name, backend("numpy"))
