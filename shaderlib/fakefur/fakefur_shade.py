@@ -157,6 +157,7 @@ def fakefur_shade_rational_sq16(
     return fakefur_blend(optics, geometry, weights, highlight, light, skin)
 
 
+@variant("fakefur_shade")
 def fakefur_shade_slab(
     coat: FurCoat,
     optics: FurOptics,
