@@ -4,8 +4,11 @@ from shaderlib.direction.mirror import mirror
 from shaderlib.domains import Direction
 from shaderlib.lang import max, normalize, sqrt, vec3
 from shaderlib.lobes.domains import Roughness, UniformPair
-from shaderlib.numeric.safe_normalize import safe_normalize
 from shaderlib.sampling.unit_circle import unit_circle
+
+# Makes the normal horizontal where nothing else decides it: for v straight from below. Its square is an
+# ordinary float, and it is far below the rounding of any other normal.
+TINY_SLOPE = 1.0e-18
 
 
 def ggx_sample(u: UniformPair, v: Direction, alpha_x: Roughness, alpha_y: Roughness) -> vec3:
@@ -17,16 +20,18 @@ def ggx_sample(u: UniformPair, v: Direction, alpha_x: Roughness, alpha_y: Roughn
     alpha_y     width along the bitangent
     returns     unit vector, possibly below the horizon. The weight value l.z / pdf is at most 1:
                 l.z (v.z + S(v)) / (l.z S(v) + v.z S(l)), S = ggx_stretch
-    degenerate  v.z <= 0: the normals are those visible from the horizon
+    degenerate  v.z <= 0: the normals visible from there; straight from below, l = -v
     form        in the space where the surface is a hemisphere, visible normals are a uniform spherical cap
                 plus the view direction V. Written with a = u.y (1 + V.z): sine sqrt(a (2 - a)) and height (1
                 - u.y) (1 + V.z), so nothing cancels and the height is never 0
     source      Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps
     """
-    up = vec3(0.0, 0.0, 1.0)
-    w = safe_normalize(vec3(alpha_x * v.x, alpha_y * v.y, max(v.z, 0.0)), up)
-    a = u.y * (1.0 + w.z)
+    w = normalize(vec3(alpha_x * v.x, alpha_y * v.y, v.z))
+    below = (w.x * w.x + w.y * w.y) / (1.0 + max(-w.z, 0.0))
+    depth = 1.0 + w.z if w.z >= 0.0 else below
+    a = u.y * depth
     cap = sqrt(max(a * (2.0 - a), 0.0)) * unit_circle(u.x)
-    height = (1.0 - u.y) * (1.0 + w.z)
-    h = normalize(vec3(alpha_x * (cap.x + w.x), alpha_y * (cap.y + w.y), height))
+    x = alpha_x * (cap.x + w.x) + TINY_SLOPE
+    y = alpha_y * (cap.y + w.y)
+    h = normalize(vec3(x, y, (1.0 - u.y) * depth))
     return normalize(mirror(v, h))

@@ -1,5 +1,6 @@
 """Poulin-Fournier lobe: value."""
 
+from shaderlib.constants import TINY_SQUARE
 from shaderlib.domains import Direction, Exponent, UnitInterval
 from shaderlib.lang import f32, max, min, variant, vec2
 from shaderlib.lobes.arc_normal import arc_normal
@@ -8,9 +9,6 @@ from shaderlib.lobes.domains import Spread
 from shaderlib.lobes.satin_diffuse import satin_diffuse
 from shaderlib.lobes.satin_highlight import satin_highlight, satin_highlight_eight
 from shaderlib.lobes.satin_visible import satin_visible
-
-# Smallest product of two cosines divided by.
-SMALLEST_PRODUCT = 1.0e-30
 
 
 def poulin_fournier_value(
@@ -27,7 +25,7 @@ def poulin_fournier_value(
                 and v both see, over 2 sin(spread) l.z v.z: of (N.l) (N.v) / pi and of blinn_phong_scale(p)
                 (N.l) (N.v) (N.h)^p. Reciprocal; albedo at most 1
     degenerate  l.z <= 0, v.z <= 0 or no point of an arc sees both: 0
-    form        diffuse part in closed form; highlight by 12 Gauss-Legendre nodes, 1e-4 of the mean off
+    form        diffuse part in closed form; highlight by 12 Gauss-Legendre nodes, 4e-6 of its peak off
     source      Poulin and Fournier 1990, A Model for Anisotropic Reflection; geometry, self-blocking and both
                 integrals derived for this library, without the paper's floor between separate cylinders
     """
@@ -36,7 +34,7 @@ def poulin_fournier_value(
     seen_v = satin_visible(v, spread, edge)
     visible = vec2(max(seen_l.x, seen_v.x), min(seen_l.y, seen_v.y))
     pitch = 2.0 * edge.y
-    scale = blinn_phong_scale(exponent) / (pitch * max(l.z * v.z, SMALLEST_PRODUCT))
+    scale = blinn_phong_scale(exponent) / max(pitch * l.z * v.z, TINY_SQUARE)
     highlight = scale * satin_highlight(l, v, visible, exponent)
     value = (1.0 - specular) * satin_diffuse(l, v, visible, pitch) + specular * highlight
     return value if l.z > 0.0 and v.z > 0.0 else 0.0
@@ -53,8 +51,8 @@ def poulin_fournier_value_eight(
     spread    half angle of each cylinder's arc, in radians
     specular  share of the light that facets of the cylinders reflect; the rest is diffuse
     exponent  p, sharpness of the facets
-    returns   as poulin_fournier_value; the highlight is 0.03 percent (p = 5) to 0.4 percent (p = 1000) of its
-              mean off
+    returns   as poulin_fournier_value; the highlight is 0.14 percent of its mean (root mean square) and 5e-4
+              of its peak off
     form      two thirds of the nodes, within 3.5 instead of 4.5 deviations of the peak
     source    as poulin_fournier_value
     """
@@ -63,7 +61,7 @@ def poulin_fournier_value_eight(
     seen_v = satin_visible(v, spread, edge)
     visible = vec2(max(seen_l.x, seen_v.x), min(seen_l.y, seen_v.y))
     pitch = 2.0 * edge.y
-    scale = blinn_phong_scale(exponent) / (pitch * max(l.z * v.z, SMALLEST_PRODUCT))
+    scale = blinn_phong_scale(exponent) / max(pitch * l.z * v.z, TINY_SQUARE)
     highlight = scale * satin_highlight_eight(l, v, visible, exponent)
     value = (1.0 - specular) * satin_diffuse(l, v, visible, pitch) + specular * highlight
     return value if l.z > 0.0 and v.z > 0.0 else 0.0

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from shaderlib.constants import INV_PI
+from shaderlib.constants import INV_PI, TINY_SQUARE
 from shaderlib.domains import Direction
 from shaderlib.lang import Interval, f32, helper, max, vec2
 from shaderlib.lobes.arc_normal import arc_normal
@@ -11,9 +11,6 @@ from shaderlib.lobes.arc_normal import arc_normal
 CUBIC = 0.166666582  # 3e2aaaa5
 QUINTIC = -0.00833178964  # bc08820f
 SEPTIC = 0.000194307228  # 394bbef3
-
-# Smallest product of two cosines divided by.
-SMALLEST_PRODUCT = 1.0e-30
 
 
 @helper
@@ -44,4 +41,4 @@ def satin_diffuse(
     along = max(n.x * l.z + n.y * l.y, 0.0) * max(n.x * v.z + n.y * v.y, 0.0)
     across = (n.y * l.z - n.x * l.y) * (n.y * v.z - n.x * v.y)
     total = 0.5 * (along * (x + sine) + across * difference)
-    return INV_PI * max(total, 0.0) / (pitch * max(l.z * v.z, SMALLEST_PRODUCT))
+    return INV_PI * max(total, 0.0) / max(pitch * l.z * v.z, TINY_SQUARE)

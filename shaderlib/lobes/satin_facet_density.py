@@ -24,8 +24,8 @@ def satin_facet_density(g: Annotated[vec3, Interval(-2.0, 2.0)], spread: Spread,
     exponent  p, sharpness of the facets
     returns   m c^(p - 1) |h.x| / (8 spread sqrt(1 - c^m)) where h lies over the arc, else 0; m = p + 1,
               c = sqrt(1 - h.x^2)
-    form      h.x^2 / (1 - c^m) is a quotient of two quantities that vanish together: 2 / m at h.x = 0. Whether h
-              lies over the arc is a comparison of products, without an angle
+    form      h.x^2 / (1 - c^m) is a quotient of two quantities that vanish together: 2 / m at h.x = 0.
+              Whether h lies over the arc is a comparison of products, without an angle
     source    derived for this library
     """
     edge = arc_normal(spread)

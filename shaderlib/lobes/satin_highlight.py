@@ -46,7 +46,7 @@ def satin_highlight(
     v         direction to the viewer, in the local frame
     visible   interval of the arc coordinate that both see; empty where its second end is not above the first
     exponent  sharpness of the facets
-    returns   at least 0; 1e-4 of its mean off
+    returns   at least 0; 3e-5 of its mean (root mean square) and 4e-6 of its peak off
     form      Gauss-Legendre quadrature over the visible arc, cut to 4.5 deviations around the peak
     source    Gauss-Legendre quadrature
     """
@@ -74,7 +74,7 @@ def satin_highlight_eight(
     v         direction to the viewer, in the local frame
     visible   interval of the arc coordinate that both see; empty where its second end is not above the first
     exponent  sharpness of the facets
-    returns   at least 0; 0.4 percent of its mean off
+    returns   at least 0; 0.14 percent of its mean (root mean square) and 5e-4 of its peak off
     form      Gauss-Legendre quadrature over the visible arc, cut to 3.5 deviations around the peak
     source    Gauss-Legendre quadrature
     """
