@@ -14,7 +14,7 @@ Border = Annotated[f32, Interval(1.0, 2.0)]
 MapHalf = Annotated[f32, Interval(0.0, 1.0)]
 
 # Number of samples that an estimator draws.
-SampleCount = Annotated[f32, Interval(0.0, 1.0e6, scale="log")]
+SampleCount = Annotated[f32, Interval(1.0, 1.0e6, scale="log")]
 
 # Probability density per steradian.
 Density = Annotated[f32, Interval(0.0, 1.0e20, scale="log")]

@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from shaderlib.constants import SMALLEST_NORMAL
-from shaderlib.lang import Interval, abs, f32, max, min
+from shaderlib.lang import Interval, abs, f32, helper, max, min
 
 # Minimax in the relative error of atan(q) / (2 pi) on |q| <= tan(pi / 8): 1.8e-8, in odd powers of q.
 TURN_1 = 0.159154937  # 3e22f983
@@ -16,6 +16,7 @@ TURN_9 = 0.0127112195  # 3c5042b8
 TAN_SIXTEENTH = 0.414213562373095049
 
 
+@helper
 def turn_of(
     y: Annotated[f32, Interval(-1.0e30, 1.0e30)], x: Annotated[f32, Interval(-1.0e30, 1.0e30)]
 ) -> f32:
