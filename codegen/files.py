@@ -16,18 +16,22 @@ def write_text(path: Path, text: str) -> None:
 
 def write_bytes(path: Path, data: bytes) -> None:
     """Write a file atomically; raises UserError where that is not possible."""
-    folder = path.parent
-    if path.is_dir():
-        raise UserError(f'cannot write "{path}": it is a folder')
-    if not folder.is_dir():
-        raise UserError(f'cannot write "{path}": the folder "{folder}" does not exist')
     aside: str | None = None
     try:
-        handle, aside = tempfile.mkstemp(dir=folder, prefix=f".{path.name}.")
+        if path.is_dir():
+            raise UserError(f'cannot write "{path}": it is a folder')
+        if path.exists() and not path.is_file():  # a device or a pipe: written to, never replaced
+            path.write_bytes(data)
+            return
+        target = path.resolve() if path.is_symlink() else path
+        folder = target.parent
+        if not folder.is_dir():
+            raise UserError(f'cannot write "{path}": the folder "{folder}" does not exist')
+        handle, aside = tempfile.mkstemp(dir=folder, prefix=".vair-")
         with os.fdopen(handle, "wb") as file:
             file.write(data)
-        os.chmod(aside, path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask())
-        os.replace(aside, path)
+        os.chmod(aside, target.stat().st_mode & 0o777 if target.exists() else 0o666 & ~_umask())
+        os.replace(aside, target)
     except OSError as e:
         if aside is not None and os.path.exists(aside):
             os.unlink(aside)
