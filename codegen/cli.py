@@ -73,9 +73,16 @@ def run(arguments: list[str]) -> int:
         click.echo("vair: interrupted", err=True)
         return 130
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+        return _reader_left()
+    except SystemExit:  # click's answer to a reader that left
+        return _reader_left()
     return status if isinstance(status, int) else 0
+
+
+def _reader_left() -> int:
+    """The reader of a pipe has seen enough; nothing went wrong."""
+    sys.stdout = open(os.devnull, "w")  # noqa: SIM115  stays open until the process ends
+    return 0
 
 
 def _refuse(sentence: str) -> int:
