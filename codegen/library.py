@@ -129,10 +129,12 @@ class Library:
 
     def _hash(self, functions: Iterable[Function], structs: Iterable[StructDef]) -> str:
         names = [*(f.name for f in functions), *(s.name for s in structs)]
-        files = {(m := self.resolver.module_of(name)): self.resolver.file(m) for name in names}
+        files = self.resolver.needed_files(self.resolver.module_of(name) for name in names)
         digest = hashlib.sha256()
         for module in sorted(files):
             digest.update(f"{module}\n{files[module].text}\n".encode())
+        for name in sorted(names):
+            digest.update("".join(f"{bound}\n" for bound in self.bounds.get(name, ())).encode())
         return digest.hexdigest()[:16]
 
     def _order(self, function: Function) -> tuple[int, str, str, int, int]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -95,6 +95,17 @@ class Resolver:
             yield
         finally:
             self._defining.pop()
+
+    def needed_files(self, modules: Iterable[str]) -> dict[str, SourceFile]:
+        """The files of these modules and, all the way, what they import: constants and domains count too."""
+        needed: dict[str, SourceFile] = {}
+        waiting = list(modules)
+        while waiting:
+            module = waiting.pop()
+            if module not in needed:
+                needed[module] = self.file(module)
+                waiting += [m for m, _ in needed[module].imports.values() if m != LANG]
+        return needed
 
     def where(self, name: str) -> SourceFile | None:
         """The file that defines a function or struct; None for an unknown name."""
