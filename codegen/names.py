@@ -43,6 +43,13 @@ def check(name: str, kind: str, place: Place) -> None:
         raise SourceError(place, f'{kind} name "{name}" is {where}; choose another')
 
 
+def check_emitted(name: str, prefix: str) -> None:
+    """Raise UserError where a name has become reserved by its prefix."""
+    where = reserved().get(name)
+    if where is not None:
+        raise UserError(f'prefix "{prefix}" makes "{name}", which is {where}')
+
+
 def check_prefix(prefix: str) -> None:
     """Raise UserError where `prefix` cannot start an identifier on every target."""
     if not prefix or not prefix.isascii() or not prefix.isidentifier() or "__" in prefix:

@@ -9,7 +9,7 @@ from codegen.emit import comment, wrap
 from codegen.emit.dialect import Dialect
 from codegen.emit.stmt import StmtPrinter
 from codegen.library import VERSION, Library, Selection
-from codegen.names import check_prefix
+from codegen.names import check_emitted, check_prefix
 from codegen.passes import run_passes
 
 DEFAULT_PREFIX = "vair_"
@@ -26,6 +26,8 @@ def emit(
     """
     check_prefix(prefix)
     selection = library.select(names)
+    for name in (*(f.name for f in selection.functions), *(s.name for s in selection.structs)):
+        check_emitted(prefix + name, prefix)
     body = emit_selection(library, dialect, selection, prefix)
     guard = _guard(dialect, prefix, names)
     lines = _header(dialect, selection, names, prefix)
