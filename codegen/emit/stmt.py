@@ -60,7 +60,8 @@ class StmtPrinter:
         return lines
 
     def branch(self, s: ir.If, indent: str, lead: str = "") -> list[str]:
-        lines = [f"{indent}{lead}if ({self.expr.show(s.condition)}) {{", *self.block(s.then, indent + _STEP)]
+        head = wrap.code(f"{lead}if ({self.expr.show(s.condition)}) {{", indent)
+        lines = [*head, *self.block(s.then, indent + _STEP)]
         if len(s.orelse) == 1 and isinstance(s.orelse[0], ir.If):
             return [*lines, *self.branch(s.orelse[0], indent, "} else ")]
         if s.orelse:
