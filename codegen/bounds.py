@@ -50,10 +50,16 @@ class Bound:
 
 def read_bounds(shown_path: str, data: Mapping[str, Any]) -> dict[str, list[Bound]]:
     """Bounds by function from parsed TOML; raises UserError naming file, function and key."""
-    return {
-        name: [_read(f"{shown_path}: {name}", name, entry) for entry in entries]
-        for name, entries in data.items()
-    }
+    found: dict[str, list[Bound]] = {}
+    for name, entries in data.items():
+        where = f"{shown_path}: {name}"
+        if not isinstance(entries, list) or not all(isinstance(entry, Mapping) for entry in entries):
+            raise UserError(f"{where}: bounds are tables, written [[{name}]]")
+        try:
+            found[name] = [_read(where, name, entry) for entry in entries]
+        except (TypeError, ValueError, AttributeError):
+            raise UserError(f"{where}: a value has the wrong type; see codegen/bounds.py") from None
+    return found
 
 
 def _read(where: str, name: str, entry: Mapping[str, Any]) -> Bound:
@@ -68,6 +74,9 @@ def _read(where: str, name: str, entry: Mapping[str, Any]) -> Bound:
         raise UserError(f'{where}: unknown measure "{measure}"{nearest(str(measure), MEASURES)}')
     if measure != "exact" and "bound" not in entry:
         raise UserError(f"{where}: a bound needs its number")
+    for key in ("domain", "origin"):
+        if not entry[key].isascii():
+            raise UserError(f"{where}: {key} is ASCII: it is emitted into shaders")
     return Bound(
         function=name,
         measure=measure,
