@@ -22,8 +22,7 @@ from conformance.reference.exact import (
     real,
     unit,
 )
-from conformance.reference.lobes_half import around, lit, radial_defect
-from conformance.reference.sampling import hemisphere_cosine
+from conformance.reference.lobes_half import around, cosine_direction, lit, radial_defect
 
 
 def lambert_value(l: Array, v: Array) -> Array:
@@ -37,8 +36,8 @@ def lambert_pdf(l: Array, v: Array) -> Array:
 
 
 def lambert_sample(u: Array, v: Array) -> Array:
-    """Malley's method."""
-    return hemisphere_cosine(u)
+    """Malley's method; the rim of the disc, u = (0, 0) among it, goes to the peak: its density is not 0."""
+    return cosine_direction(u)
 
 
 def mirrored(v: Array) -> Array:
@@ -141,9 +140,14 @@ def satin_edge(inputs: Inputs) -> Mask:
 
 
 def satin_strategy(inputs: Inputs) -> Mask:
-    """u.x lies on the boundary between the two strategies."""
-    gap = np.abs(real(inputs["u"])[..., 0] - (1.0 - real(inputs["specular"])))
-    return np.asarray((gap <= 1e-6) & (real(inputs["specular"]) < 1.0), dtype=np.bool_)
+    """u.x on the boundary between the strategies: the end of the one, the beginning of the other."""
+    x, diffuse = real(inputs["u"])[..., 0], 1.0 - real(inputs["specular"])
+    return np.asarray((np.abs(x - diffuse) <= 1e-6) & ((diffuse > 0.0) | (x > 0.0)), dtype=np.bool_)
+
+
+def view_below(inputs: Inputs) -> Mask:
+    """Visible normals are defined for views above the horizon only."""
+    return np.asarray(real(inputs["v"])[..., 2] <= 0.0, dtype=np.bool_)
 
 
 AMBIGUOUS: dict[str, Callable[[Inputs], Mask]] = {
@@ -152,7 +156,7 @@ AMBIGUOUS: dict[str, Callable[[Inputs], Mask]] = {
     "blinn_phong_pdf": half_density("exponent"),
     "ward_pdf": half_density(),
     "ashikhmin_shirley_pdf": half_density("exponent_x", "exponent_y"),
-    "ggx_pdf": lambda inputs: undetermined_half(inputs) | level_half(inputs),
+    "ggx_pdf": lambda inputs: undetermined_half(inputs) | level_half(inputs) | view_below(inputs),
     "strand_value": strand_edge,
     "strand_pdf": strand_edge,
     "strand_sample": strand_side,

@@ -1,8 +1,9 @@
-"""Float64 lobes around a fibre along x: the strand lobe and Poulin and Fournier's satin of parallel
-cylinders.
+"""Float64 lobes around a fibre along x: the strand lobe, and Poulin and Fournier's parallel cylinders.
 
 Formulas of reference/lobes.md sections 1.7 and 1.8. Elevations are measured from the plane orthogonal to x.
 """
+
+from collections.abc import Callable
 
 import numpy as np
 
@@ -10,10 +11,10 @@ from conformance.reference.exact import Array, mirror, power_of_one_minus, real,
 from conformance.reference.lobes_half import (
     TINY,
     blinn_phong_scale,
+    cosine_direction,
     lit,
     upper_half,
 )
-from conformance.reference.sampling import hemisphere_cosine
 
 NODES = 64
 """Gauss-Legendre nodes of the satin's specular integral, over nine widths of the lobe on either side."""
@@ -38,6 +39,13 @@ def strand_blend(v: Array, exponent: Array) -> Array:
     p = real(exponent)
     along = np.abs(cv) ** (p + 2.0) / (p + 1.0)
     return along / (sv * np.sqrt(2.0 * np.pi / (p + 1.5)) + along)
+
+
+def bell_defect(y: Array, m: Array) -> Array:
+    """1 - (1 - y^2)^(1/m) for 0 <= y <= 1."""
+    inside = y < 1.0
+    y = np.where(inside, y, 0.5)
+    return np.where(inside, -np.expm1((np.log1p(-y) + np.log1p(y)) / m), 1.0)
 
 
 def strand_value(l: Array, v: Array, exponent: Array) -> Array:
@@ -69,7 +77,7 @@ def strand_sides(u: Array, v: Array, exponent: Array) -> tuple[Array, Array, Arr
     # b y^2 + (1 - b) y = x, solved for y without cancellation
     root = (1.0 - b) + np.sqrt((1.0 - b) ** 2 + 4.0 * b * x)
     y = np.where(x > 0.0, 2.0 * x / np.where(root > 0.0, root, 1.0), 0.0)
-    q = -np.expm1(np.log1p(-np.minimum(y * y, 1.0 - 1e-17)) / m)
+    q = bell_defect(y, m)
     c, s = 1.0 - q, np.sqrt(q * (2.0 - q))
     plus, minus = np.maximum(0.0, c * sv + s * cv), np.maximum(0.0, c * sv - s * cv)
     both = plus + minus
@@ -90,46 +98,70 @@ def strand_sample(u: Array, v: Array, exponent: Array) -> Array:
     return unit(stack(side * s * sv - c * cv, radius * np.cos(phi), radius * np.sin(phi)))
 
 
-def visible_arc(phi: Array, spread: Array) -> tuple[Array, Array]:
-    """The part [a, b] of an arc of half-angle `spread` that a direction at profile angle phi sees.
+def grazing_angle(w: Array) -> tuple[Array, Array]:
+    """Angle gamma of w above the surface in the profile plane, and the side (1 for w.y >= 0) that it comes
+    from."""
+    return np.arctan2(w[..., 2], np.abs(w[..., 1])), np.where(w[..., 1] >= 0.0, 1.0, -1.0)
 
-    Arcs of radius 1 stand side by side at pitch 2 sin(spread). The far end is cut by the arc's own horizon,
-    the near end by the neighbouring arc.
+
+def visible_arc(gamma: Array, side: Array, spread: Array) -> tuple[Array, Array]:
+    """The part [a, b] of an arc of half-angle `spread` that a direction gamma above the surface sees.
+
+    Arcs of radius 1 stand side by side at pitch d = 2 sin(spread). The far end is the arc's own horizon,
+    -gamma on the side +1; the near end is cut by the neighbour where gamma < spread: phi + asin(d cos phi -
+    1) for the profile angle phi = pi / 2 - gamma, written as -gamma + 2 asin sqrt(d sin(gamma) / 2), which
+    keeps tiny angles.
     """
-    tilt, pitch = np.abs(phi), 2.0 * np.sin(spread)
-    horizon = np.maximum(-spread, tilt - np.pi / 2.0)
-    blocked = tilt + np.arcsin(np.clip(pitch * np.cos(tilt) - 1.0, -1.0, 1.0))
-    neighbour = np.where(tilt > np.pi / 2.0 - spread, np.minimum(spread, blocked), spread)
-    return np.where(phi >= 0.0, horizon, -neighbour), np.where(phi >= 0.0, neighbour, -horizon)
+    pitch = 2.0 * np.sin(spread)
+    far = np.minimum(spread, gamma)
+    shadow = 2.0 * np.arcsin(np.sqrt(np.clip(pitch * np.sin(gamma) / 2.0, 0.0, 1.0))) - gamma
+    near = np.where(gamma < spread, np.minimum(spread, shadow), spread)
+    return np.where(side > 0.0, -far, -near), np.where(side > 0.0, near, far)
+
+
+def facing(xi: Array, gamma: Array, side: Array) -> Array:
+    """Cosine between the facet at arc angle xi and the direction, over that direction's length in the
+    profile."""
+    return np.sin(gamma + side * xi)
 
 
 def poulin_fournier_value(l: Array, v: Array, spread: Array, specular: Array, exponent: Array) -> Array:
-    """(1 - specular) f_d + specular f_s for parallel cylinders, the specular integral by fine quadrature."""
+    """(1 - specular) f_d + specular f_s for parallel cylinders, both integrals over the arc by fine
+    quadrature."""
     bright = lit(l, v) > 0.0
     up = np.array([0.0, 0.0, 1.0])
     l, v = (np.where(bright[..., None], unit(w), up) for w in (l, v))
     half_angle, p = real(spread), real(exponent)
-    pitch = 2.0 * np.sin(half_angle)
-    phi_l, phi_v = (np.arctan2(w[..., 1], w[..., 2]) for w in (l, v))
-    (low_l, high_l), (low_v, high_v) = visible_arc(phi_l, half_angle), visible_arc(phi_v, half_angle)
+    (gamma_l, side_l), (gamma_v, side_v) = grazing_angle(l), grazing_angle(v)
+    (low_l, high_l), (low_v, high_v) = (
+        visible_arc(gamma_l, side_l, half_angle), visible_arc(gamma_v, side_v, half_angle)
+    )  # fmt: skip
     a = np.maximum(low_l, low_v)
     b = np.maximum(np.minimum(high_l, high_v), a)
-    slant = pitch * np.cos(phi_l) * np.cos(phi_v)
-    overlap = np.cos(phi_l - phi_v) * (b - a) + np.sin(b - a) * np.cos(a + b - phi_l - phi_v)
-    diffuse = 0.5 * overlap / (np.pi * slant)
+    slant = 2.0 * np.sin(half_angle) * np.sin(gamma_l) * np.sin(gamma_v)
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
 
+    def over_arc(low: Array, high: Array, bell: Callable[[Array], Array]) -> Array:
+        xi = ((low + high) / 2.0)[..., None] + ((high - low) / 2.0)[..., None] * nodes
+        both = facing(xi, gamma_l[..., None], side_l[..., None]) * facing(
+            xi, gamma_v[..., None], side_v[..., None]
+        )
+        return np.asarray(
+            (high - low) / 2.0 * np.sum(bell(xi) * both * weights, axis=-1) / slant, dtype=np.float64
+        )
+
+    diffuse = over_arc(a, b, np.ones_like) / np.pi
     h, _ = upper_half(l, v)
     across = power_of_one_minus(h[..., 0] ** 2, p / 2.0)
-    phi_h = np.arctan2(h[..., 1], h[..., 2])
+    phi_h = np.arctan2(h[..., 1], h[..., 2])[..., None]
     reach = np.minimum(np.pi / 2.0, WIDTHS / np.sqrt(p + 1.0))
-    low, high = np.clip(phi_h - reach, a, b), np.clip(phi_h + reach, a, b)
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    xi = ((low + high) / 2.0)[..., None] + ((high - low) / 2.0)[..., None] * nodes
-    # cos^p from the sine of half the angle: 1 - cos x = 2 sin^2(x / 2)
-    bell = power_of_one_minus(2.0 * np.sin((xi - phi_h[..., None]) / 2.0) ** 2, p[..., None])
-    facets = bell * np.cos(xi - phi_l[..., None]) * np.cos(xi - phi_v[..., None])
-    integral = (high - low) / 2.0 * np.sum(facets * weights, axis=-1)
-    shiny = blinn_phong_scale(p) * across * integral / slant
+    low, high = np.clip(phi_h[..., 0] - reach, a, b), np.clip(phi_h[..., 0] + reach, a, b)
+
+    def bell(xi: Array) -> Array:
+        """cos^p of the angle from the half vector; 1 - cos x = 2 sin^2(x / 2)."""
+        return power_of_one_minus(2.0 * np.sin((xi - phi_h) / 2.0) ** 2, p[..., None])
+
+    shiny = blinn_phong_scale(p) * across * over_arc(low, high, bell)
     return np.where(bright, (1.0 - real(specular)) * diffuse + real(specular) * shiny, 0.0)
 
 
@@ -150,19 +182,22 @@ def poulin_fournier_pdf(l: Array, v: Array, spread: Array, specular: Array, expo
     facets = np.where(inside & (cosine > 0.0), elevation_density / (4.0 * half_angle), 0.0)
     diffuse = np.maximum(unit(l)[..., 2], 0.0) / np.pi
     s = real(specular)
-    return (1.0 - s) * diffuse + s * facets / (4.0 * np.maximum(vh, TINY))
+    return (1.0 - s) * diffuse + s * facets / (4.0 * vh)
 
 
 def poulin_fournier_sample(u: Array, v: Array, spread: Array, specular: Array, exponent: Array) -> Array:
     """The strategy by u.x, rescaled; then a cosine direction or a facet normal to mirror about."""
     x, y, s = real(u)[..., 0], real(u)[..., 1], real(specular)
     diffuse = x < 1.0 - s
-    spread_out = hemisphere_cosine(stack(np.where(diffuse, x / np.where(s < 1.0, 1.0 - s, 1.0), 0.5), y))
+    spread_out = cosine_direction(stack(np.where(diffuse, x / np.where(s < 1.0, 1.0 - s, 1.0), 0.5), y))
     first = np.where(diffuse, 0.5, (x - (1.0 - s)) / np.where(s > 0.0, s, 1.0))
     root = 2.0 * first - 1.0
-    q = -np.expm1(np.log1p(-np.minimum(root * root, 1.0 - 1e-17)) / (real(exponent) + 1.0))
+    q = bell_defect(np.abs(root), real(exponent) + 1.0)
     c, sine, xi = 1.0 - q, np.sign(root) * np.sqrt(q * (2.0 - q)), real(spread) * (2.0 * y - 1.0)
-    h = stack(sine, c * np.sin(xi), c * np.cos(xi))
+    # the first point of the strategy, u = (0, 0) for specular 1, is the peak and not the end of the lobe
+    h = np.where(
+        (root > -1.0)[..., None], stack(sine, c * np.sin(xi), c * np.cos(xi)), np.array([0.0, 0.0, 1.0])
+    )
     return np.where(diffuse[..., None], spread_out, mirror(unit(v), h))
 
 

@@ -8,18 +8,22 @@ one.
 import numpy as np
 
 from conformance.reference.exact import Array, mirror, real, stack, unit
+from conformance.reference.sampling import hemisphere_cosine
 
 TINY = 1e-300
+NO_HALF = 1e-12
+"""Stands for |v.h| at l = -v, far below what float32 directions can come to otherwise."""
 
 
 def upper_half(l: Array, v: Array) -> tuple[Array, Array]:
-    """The half vector turned to the upper side, and |v.h|; for l = -v a vector orthogonal to v, and 0."""
+    """The half vector turned to the upper side, and |v.h|; for l = -v the x axis, and NO_HALF."""
     l, v = unit(l), unit(v)
     g = l + v
     square = np.sum(g * g, axis=-1)
-    h = g / np.sqrt(np.where(square > 0.0, square, 1.0))[..., None]
+    h = np.where((square > 0.0)[..., None], unit(g), np.array([1.0, 0.0, 0.0]))
     h = np.where(h[..., 2:] < 0.0, -h, h)
-    return h, np.sqrt(square) / 2.0  # v.(l + v) = 1 + l.v = |l + v|^2 / 2
+    # v.(l + v) = 1 + l.v = |l + v|^2 / 2, so v.h = |l + v| / 2
+    return h, np.maximum(np.sqrt(square) / 2.0, NO_HALF)
 
 
 def height_power(h: Array, exponent: Array) -> Array:
@@ -30,6 +34,12 @@ def height_power(h: Array, exponent: Array) -> Array:
     logarithm = np.where(steep, 0.5 * np.log1p(-np.where(steep, flat, 0.0)), low)
     value = np.exp(real(exponent) * logarithm)
     return np.where(real(exponent) == 0.0, 1.0, np.where(h[..., 2] > 0.0, value, 0.0))
+
+
+def cosine_direction(u: Array) -> Array:
+    """Malley's method, except that directions in the horizon, whose density is 0, become the normal."""
+    l = hemisphere_cosine(u)
+    return np.where(l[..., 2:] > 0.0, l, np.array([0.0, 0.0, 1.0]))
 
 
 def lit(l: Array, v: Array) -> Array:
@@ -63,7 +73,7 @@ def blinn_phong_value(l: Array, v: Array, exponent: Array) -> Array:
 def blinn_phong_pdf(l: Array, v: Array, exponent: Array) -> Array:
     """(p + 1) / (2 pi) (h.z)^p / (4 |v.h|)."""
     h, vh = upper_half(l, v)
-    return (real(exponent) + 1.0) / (2.0 * np.pi) * height_power(h, exponent) / (4.0 * np.maximum(vh, TINY))
+    return (real(exponent) + 1.0) / (2.0 * np.pi) * height_power(h, exponent) / (4.0 * vh)
 
 
 def blinn_phong_sample(u: Array, v: Array, exponent: Array) -> Array:
@@ -80,7 +90,7 @@ def ward_value(l: Array, v: Array, alpha_x: Array, alpha_y: Array) -> Array:
     above = h[..., 2] > 0.0
     z = np.where(above, h[..., 2], 1.0)
     e = ((h[..., 0] / ax) ** 2 + (h[..., 1] / ay) ** 2) / z**2
-    value = np.exp(-e) / (4.0 * np.pi * ax * ay * np.maximum(lh, TINY) ** 2 * z**4)
+    value = np.exp(-e) / (4.0 * np.pi * ax * ay * lh**2 * z**4)
     return np.where(above, lit(l, v) * value, 0.0)
 
 
@@ -91,7 +101,7 @@ def ward_pdf(l: Array, v: Array, alpha_x: Array, alpha_y: Array) -> Array:
     above = h[..., 2] > 1e-60  # (h.z)^3 must not underflow; the exponential is 0 long before
     z = np.where(above, h[..., 2], 1.0)
     e = ((h[..., 0] / ax) ** 2 + (h[..., 1] / ay) ** 2) / z**2
-    return np.where(above, np.exp(-e) / (np.pi * ax * ay * z**3) / (4.0 * np.maximum(vh, TINY)), 0.0)
+    return np.where(above, np.exp(-e) / (np.pi * ax * ay * z**3) / (4.0 * vh), 0.0)
 
 
 def ward_sample(u: Array, v: Array, alpha_x: Array, alpha_y: Array) -> Array:
@@ -115,14 +125,14 @@ def ashikhmin_shirley_value(l: Array, v: Array, exponent_x: Array, exponent_y: A
     front = np.sqrt((real(exponent_x) + 1.0) * (real(exponent_y) + 1.0)) / (8.0 * np.pi)
     nearer = np.maximum(np.maximum(unit(l)[..., 2], unit(v)[..., 2]), TINY)
     power = height_power(h, shirley_exponent(h, exponent_x, exponent_y))
-    return np.asarray(lit(l, v) * front * power / (np.maximum(vh, TINY) * nearer), dtype=np.float64)
+    return np.asarray(lit(l, v) * front * power / (vh * nearer), dtype=np.float64)
 
 
 def ashikhmin_shirley_pdf(l: Array, v: Array, exponent_x: Array, exponent_y: Array) -> Array:
     """sqrt((nx + 1)(ny + 1)) / (2 pi) (h.z)^E / (4 |v.h|)."""
     h, vh = upper_half(l, v)
     front = np.sqrt((real(exponent_x) + 1.0) * (real(exponent_y) + 1.0)) / (2.0 * np.pi)
-    return front * height_power(h, shirley_exponent(h, exponent_x, exponent_y)) / (4.0 * np.maximum(vh, TINY))
+    return front * height_power(h, shirley_exponent(h, exponent_x, exponent_y)) / (4.0 * vh)
 
 
 def ashikhmin_shirley_sample(u: Array, v: Array, exponent_x: Array, exponent_y: Array) -> Array:
@@ -164,7 +174,8 @@ def ggx_pdf(l: Array, v: Array, alpha_x: Array, alpha_y: Array) -> Array:
     ax, ay = real(alpha_x), real(alpha_y)
     h, _ = upper_half(l, v)
     view = unit(v)
-    density = ggx_distribution(h, ax, ay) / (2.0 * (view[..., 2] + smith_length(view, ax, ay)))
+    seen = np.maximum(view[..., 2] + smith_length(view, ax, ay), TINY)
+    density = ggx_distribution(h, ax, ay) / (2.0 * seen)
     return np.where(unit(l)[..., 2] + view[..., 2] > 0.0, density, 0.0)
 
 

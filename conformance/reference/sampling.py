@@ -109,8 +109,8 @@ def disk_concentric(u: Array) -> Array:
 def hemisphere_cosine(u: Array) -> Array:
     """Malley's method: a point of the disc lifted to the hemisphere; 1 - r^2 comes from the exact radius."""
     disk = disk_concentric(u)
-    r = np.max(np.abs(2.0 * real(u) - 1.0), axis=-1)
-    return stack(disk[..., 0], disk[..., 1], np.sqrt((1.0 - r) * (1.0 + r)))
+    inside = 2.0 * np.min(np.minimum(real(u), 1.0 - real(u)), axis=-1)  # 1 - r, exact also for tiny u
+    return stack(disk[..., 0], disk[..., 1], np.sqrt(inside * (2.0 - inside)))
 
 
 def sphere_uniform(u: Array) -> Array:

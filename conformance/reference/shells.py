@@ -143,7 +143,8 @@ def parallel_edge(inputs: Inputs) -> Mask:
     """The plain cross product of an edge along n is rounding noise of any direction, or exactly zero."""
     edge, n = real(inputs["edge"]), real(inputs["n"])
     single = ((edge != 0.0) | (n != 0.0)).sum(axis=-1) <= 1
-    return np.asarray(~single & (sine(edge, n) <= 8.0 * ROUNDING), dtype=np.bool_)
+    given = (edge != 0.0).any(axis=-1)
+    return np.asarray(given & ~single & (sine(edge, n) <= 8.0 * ROUNDING), dtype=np.bool_)
 
 
 def nothing_authored(inputs: Inputs) -> Mask:
