@@ -192,10 +192,10 @@ def poulin_fournier_sample(u: Array, v: Array, spread: Array, specular: Array, e
     spread_out = cosine_direction(stack(np.where(diffuse, x / np.where(s < 1.0, 1.0 - s, 1.0), 0.5), y))
     first = np.where(diffuse, 0.5, (x - (1.0 - s)) / np.where(s > 0.0, s, 1.0))
     root = 2.0 * first - 1.0
-    # the first point, u = (0, 0) for specular 1, is the peak and not the corner of the lobe
+    # u = (0, 0) for specular 1 is the peak and not the corner of the lobe; on its edges the density is 0
     begins = root <= -1.0
     q = bell_defect(np.where(begins, 0.0, np.abs(root)), real(exponent) + 1.0)
-    xi = np.where(begins & (y == 0.0), 0.0, real(spread) * (2.0 * y - 1.0))
+    xi = np.where(y == 0.0, 0.0, real(spread) * (2.0 * y - 1.0))
     c, sine = 1.0 - q, np.sign(root) * np.sqrt(q * (2.0 - q))
     h = stack(sine, c * np.sin(xi), c * np.cos(xi))
     return np.where(diffuse[..., None], spread_out, mirror(unit(v), h))
