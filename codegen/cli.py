@@ -74,6 +74,9 @@ def run(arguments: list[str]) -> int:
         return 130
     except BrokenPipeError:
         return _reader_left()
+    except OSError as e:
+        _reader_left()
+        return _refuse(f"{e.filename or 'standard output'}: {e.strerror}")
     except SystemExit:  # click's answer to a reader that left
         return _reader_left()
     return status if isinstance(status, int) else 0
