@@ -1,4 +1,4 @@
-"""Features that a bound speaks of: a scalar input, a struct field, angle(x, y), dot(x, y), length(x)."""
+"""Features that a bound speaks of: an input, its field or component, angle(x, y), dot(x, y), length(x)."""
 
 from __future__ import annotations
 
@@ -17,9 +17,12 @@ _CALL = re.compile(r"^(angle|dot|length)\(([\w.]+)(?:, *([\w.]+))?\)$")
 
 
 def lookup(inputs: Mapping[str, Any], path: str) -> Array:
-    """An input or a struct field by its dotted path, in float64."""
+    """An input, a struct field or a vector's component by its dotted path, in float64."""
     value: Any = inputs
     for part in path.split("."):
+        if isinstance(value, np.ndarray) and value.ndim == 2 and part in tuple("xyzw"[: value.shape[1]]):
+            value = value[:, "xyzw".index(part)]
+            continue
         if not isinstance(value, Mapping) or part not in value:
             valid = value if isinstance(value, Mapping) else ()
             raise UserError(f'a bound speaks of an unknown input "{path}"{nearest(part, valid)}')
