@@ -133,7 +133,7 @@ def repeated(option: str, values: Iterable[str]) -> list[str]:
 
 
 def shoot(studio: Studio, library: Library, name: str) -> Shot:
-    """Shade the picture once from cold, opening and building included, then warm."""
+    """Shade the picture once with the building of the program included, then warm."""
     start = time.perf_counter()
     backend = open_backend(name, library)
     shaded = studio.shade(backend)
