@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
-Call = Callable[[str, Mapping[str, Array]], Any]
+Call = Callable[[str, Mapping[str, Any]], Any]
 """Evaluates a named function on inputs by parameter name; returns an array."""
 
 
@@ -64,7 +64,7 @@ def lobe_evaluator(call: Call, lobe: str, parameters: Mapping[str, float]) -> Lo
 def reference_call(references: Mapping[str, Callable[..., Any]]) -> Call:
     """Evaluates float64 references by keyword."""
 
-    def call(name: str, inputs: Mapping[str, Array]) -> Any:
+    def call(name: str, inputs: Mapping[str, Any]) -> Any:
         return references[name](**inputs)
 
     return call
