@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import ast
 import math
-from typing import TYPE_CHECKING
 
 from codegen.errors import nearest
 from codegen.frontend import constants
+from codegen.frontend.scope import Names
 from codegen.frontend.source import LANG, SourceFile
 from codegen.ir.domains import MARKERS, SCALES, Domain, Interval, Length, Unit
 from codegen.ir.types import F32, VALUE_TYPES, Type, Vector
 
-if TYPE_CHECKING:
-    from codegen.frontend.resolve import Resolver
-
 
 def read(
-    resolver: Resolver, file: SourceFile, node: ast.expr | None, owner: ast.AST
+    resolver: Names, file: SourceFile, node: ast.expr | None, owner: ast.AST
 ) -> tuple[Type, Domain | None]:
     """The type and domain of an annotation; raises SourceError where it is missing or unknown."""
     match node:
@@ -37,7 +34,7 @@ def read(
             raise file.error(node, "a type is a name or Annotated[type, domain]")
 
 
-def _named(resolver: Resolver, file: SourceFile, node: ast.expr, name: str) -> tuple[Type, Domain | None]:
+def _named(resolver: Names, file: SourceFile, node: ast.expr, name: str) -> tuple[Type, Domain | None]:
     where, original = resolver.find(file, name) or (None, name)
     if where is None and original in VALUE_TYPES and file.imports.get(name, (LANG, name))[0] == LANG:
         return VALUE_TYPES[original], None
@@ -59,7 +56,7 @@ def _check_domain(file: SourceFile, node: ast.expr, type_: Type, domain: Domain)
         raise file.error(node, f'unknown scale "{domain.scale}"{nearest(domain.scale, SCALES)}')
 
 
-def _marker(resolver: Resolver, file: SourceFile, node: ast.expr) -> Domain | None:
+def _marker(resolver: Names, file: SourceFile, node: ast.expr) -> Domain | None:
     if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
         return None
     kind = MARKERS.get(node.func.id)

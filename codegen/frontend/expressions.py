@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 from codegen.errors import nearest
 from codegen.frontend import constants
+from codegen.frontend.scope import Names
 from codegen.frontend.source import LANG, SourceFile, describe
 from codegen.ir import nodes as ir
 from codegen.ir.types import BOOL, F32, I32, U32, VALUE_TYPES, Scalar, Struct, Type, Vector, vector_of
 from codegen.ops import BUILTINS, OPERATORS
-
-if TYPE_CHECKING:
-    from codegen.frontend.resolve import Resolver
 
 _SYMBOLS: dict[type[ast.AST], str] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.FloorDiv: "//", ast.Mod: "%",
@@ -38,7 +36,7 @@ class ExpressionLowering:
     """
 
     def __init__(
-        self, resolver: Resolver, file: SourceFile, scope: Mapping[str, Type], ended: Collection[str] = ()
+        self, resolver: Names, file: SourceFile, scope: Mapping[str, Type], ended: Collection[str] = ()
     ) -> None:
         self.resolver = resolver
         self.file = file

@@ -13,6 +13,7 @@ from codegen.errors import Place, SourceError, UserError, nearest, unknown
 from codegen.frontend import annotations as stated
 from codegen.frontend import constants, docstring
 from codegen.frontend.source import LANG, ROOT_PACKAGE, SourceFile, parse_file, read_source
+from codegen.frontend.statements import lower_body
 from codegen.ir.domains import MARKERS, Domain
 from codegen.ir.nodes import Doc, Function, Parameter, StructDef, callees
 from codegen.ir.types import VALUE_TYPES, Field, Struct, Type
@@ -280,8 +281,6 @@ class Resolver:
         return docstring.parse(text)
 
     def _lower(self, file: SourceFile, node: ast.FunctionDef) -> Function:
-        from codegen.frontend.statements import lower_body  # imported here: it needs Resolver for its types
-
         names.check(node.name, "function", file.place(node))
         parameters, returns = self.signature(file, node)
         kind, base = self.kind(file, node)

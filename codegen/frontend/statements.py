@@ -5,25 +5,22 @@ from __future__ import annotations
 import ast
 from collections import ChainMap
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from codegen import names
 from codegen.errors import nearest
 from codegen.frontend import constants
 from codegen.frontend.expressions import ExpressionLowering
+from codegen.frontend.scope import Names
 from codegen.frontend.source import SourceFile, describe
 from codegen.ir import nodes as ir
 from codegen.ir.types import BOOL, I32, Type
-
-if TYPE_CHECKING:
-    from codegen.frontend.resolve import Resolver
 
 MAX_ITERATIONS = 65536
 """Longest loop the front end accepts; shaders hang a machine long before this is useful."""
 
 
 def lower_body(
-    resolver: Resolver,
+    resolver: Names,
     file: SourceFile,
     node: ast.FunctionDef,
     parameters: tuple[ir.Parameter, ...],
@@ -44,7 +41,7 @@ class StatementLowering:
     """Lowers the statements of one function; a local lives from its first assignment to its block's end."""
 
     def __init__(
-        self, resolver: Resolver, file: SourceFile, parameters: tuple[ir.Parameter, ...], returns: Type
+        self, resolver: Names, file: SourceFile, parameters: tuple[ir.Parameter, ...], returns: Type
     ) -> None:
         self.resolver = resolver
         self.file = file
