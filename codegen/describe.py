@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
+from codegen.costs import costs
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain
 from codegen.ir.nodes import Function
@@ -118,4 +119,5 @@ def as_data(library: Library, f: Function) -> dict[str, Any]:
             for b in library.bounds.get(f.name, ())
         ],
         "operations": operations(library, f),
+        "cost": costs(library, f),
     }

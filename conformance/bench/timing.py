@@ -1,0 +1,170 @@
+"""Timing the variants of a function against each other on one runtime.
+
+All kernels of a group run in turn, forwards and backwards (A B B A), in every round; a ratio is formed within
+a round, and the median over the rounds counts. Software drivers are timed by the CPU time of the process,
+which other programs on the machine hardly change; hardware by the clock on the wall.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+
+from codegen.backends import complete_program
+from codegen.execute import Words
+from codegen.library import Library
+from conformance.bench import kernels
+from conformance.bench.inputs import Group, lanes
+from conformance.bench.kernels import FLAT, Mode
+from conformance.bench.ratios import Spread, net, net_ratio, spread
+from targets import Device, TimedRuntime
+from targets.protocol import Prepared
+
+SOFTWARE = (
+    "llvmpipe",
+    "lavapipe",
+    "softpipe",
+    "swiftshader",
+    "portable computing language",
+    "pthread",
+    "warp",
+)
+"""Drivers that run on the CPU, by words in their names."""
+
+SOFTWARE_LANES = 512
+HARDWARE_LANES = 1 << 16
+FLAT_LANES = 1 << 14
+MOST_STEPS = 1 << 15
+"""llvmpipe gives up on a loop after 65535 steps."""
+
+BASELINE = ""
+"""Key of the baseline kernel among the members of a group."""
+
+
+def is_software(device: Device) -> bool:
+    """Whether the device is a CPU."""
+    text = f"{device.api} {device.driver} {device.device}".lower()
+    return any(word in text for word in SOFTWARE)
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much a measurement takes.
+
+    rounds    rounds in which every kernel is launched twice
+    seconds   least time of one launch of the base's kernel
+    launches  least time of one launch as a multiple of what an empty launch takes
+    """
+
+    rounds: int = 20
+    seconds: float = 2.5e-3
+    launches: float = 12.0
+
+
+QUICK = Effort(rounds=7, seconds=2e-3, launches=8.0)
+
+
+@dataclass(frozen=True)
+class Timing:
+    """One member of a group in one mode: nanoseconds per evaluation, and its net time over the base's."""
+
+    net_ns: Spread
+    gross_ns: float
+    ratio: Spread | None
+
+
+class Bench:
+    """Measures on one runtime."""
+
+    def __init__(self, library: Library, runtime: TimedRuntime, effort: Effort) -> None:
+        self.library = library
+        self.runtime = runtime
+        self.effort = effort
+        self.software = is_software(runtime.device)
+        self.clock: Callable[[], float] = time.process_time if self.software else time.perf_counter
+        self.lanes = SOFTWARE_LANES if self.software else HARDWARE_LANES
+        self.empty = self.empty_launch()
+        self.seconds = max(effort.seconds, effort.launches * self.empty)
+
+    def empty_launch(self) -> float:
+        """Seconds that a kernel takes which does next to nothing."""
+        text = complete_program(self.runtime.device.target, "", "    store_u32(0, load_u32(0));")
+        one = self.runtime.prepare(text, np.zeros((1, self.lanes), np.uint32), 1)
+        times = [self.launch(one) for _ in range(9)]
+        one.release()
+        return float(np.median(times))
+
+    def group(self, group: Group, mode: Mode) -> dict[str, Timing]:
+        """The members of a group by name, in one mode."""
+        target = self.runtime.device.target
+        texts = {f.name: kernels.kernel(self.library, f.name, target, mode) for f in group.members}
+        texts[BASELINE] = kernels.baseline(self.library, group.base.name, target, mode)
+        words = self.words(group, mode)
+        steps = self.steps(texts[group.base.name], words, mode)
+        with self.prepared(texts, words, steps) as ready:
+            rounds = self.rounds(ready)
+        scale = 1e9 / (2 * words.shape[1] * mode.chains * steps)
+        floor, reference = rounds[BASELINE], rounds[group.base.name]
+        found = {}
+        for f in group.members:
+            above = spread([t * scale for t in net(rounds[f.name], floor)])
+            ratio = net_ratio(rounds[f.name], reference, floor)
+            found[f.name] = Timing(above, float(np.median(rounds[f.name])) * scale, ratio)
+        return found
+
+    def words(self, group: Group, mode: Mode) -> Words:
+        """Inputs for every lane of a kernel."""
+        count = max(self.lanes, FLAT_LANES) if mode == FLAT else self.lanes
+        distinct = lanes(self.library, group, min(count, SOFTWARE_LANES))
+        return np.tile(distinct, (1, count // distinct.shape[1]))
+
+    def steps(self, text: str, words: Words, mode: Mode) -> int:
+        """Steps that make one launch last about as long as it should."""
+        steps = 1
+        while mode.looped and steps < MOST_STEPS:
+            with self.prepared({"": text}, words, steps) as ready:
+                ready[""].launch()  # the first one compiles
+                taken = min(self.launch(ready[""]) for _ in range(2)) - self.empty
+            if taken >= 0.7 * self.seconds:
+                break
+            steps = min(steps * int(np.clip(self.seconds / max(taken, 1e-9), 2, 8)), MOST_STEPS)
+        return steps
+
+    @contextmanager
+    def prepared(self, texts: Mapping[str, str], words: Words, steps: int) -> Iterator[dict[str, Prepared]]:
+        """The kernels, ready to launch."""
+        given = kernels.words(words, steps)
+        ready: dict[str, Prepared] = {}
+        try:
+            for name, text in texts.items():
+                ready[name] = self.runtime.prepare(text, given, 1)
+            yield ready
+        finally:
+            for one in ready.values():
+                one.release()
+
+    def launch(self, one: Prepared) -> float:
+        """Seconds of one launch."""
+        begin = self.clock()
+        one.launch()
+        return self.clock() - begin
+
+    def rounds(self, ready: Mapping[str, Prepared]) -> dict[str, list[float]]:
+        """Per kernel the seconds of its two launches in each round."""
+        times: dict[str, list[float]] = {name: [] for name in ready}
+        for one in ready.values():
+            for _ in range(2):
+                one.launch()
+        order = list(ready)
+        for _ in range(self.effort.rounds):
+            sums = dict.fromkeys(order, 0.0)
+            for name in (*order, *reversed(order)):
+                sums[name] += self.launch(ready[name])
+            for name, total in sums.items():
+                times[name].append(total)
+            order.append(order.pop(0))  # no kernel always follows the same one
+        return times

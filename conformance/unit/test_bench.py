@@ -1,0 +1,274 @@
+"""The benchmark measures: kernels build and keep their inputs, statistics are right, tables come out.
+
+Plan. No test asserts a speed.
+  kernels     all modes and the baseline build and run on every target, for a function of scalars, of
+              vectors, of structs and of integers; eps = 0 leaves the result what the function gives
+  measuring   a tiny case gives positive times and a ratio of 1 for the base; the self-checks are numbers
+  statistics  quartiles and net ratios of synthetic rounds with a common drift; a lost reference gives none
+  inputs      groups are complete; a bound cuts the domains that it names; inputs lie in all members' domains
+  records     rounding, names of files, the README's table and the cost of `vair list`, from a small result
+  bad usage   an unknown function or target is refused with one sentence and status 2
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from codegen.bounds import Bound
+from codegen.costs import costs
+from codegen.errors import UserError
+from codegen.evaluate import evaluate
+from codegen.evaluate.arrays import arithmetic, convert_inputs
+from codegen.execute import Words, flatten
+from codegen.ir.domains import Interval
+from codegen.ir.types import leaves
+from codegen.library import Library, load_library
+from codegen.readme import speed
+from conformance import cases
+from conformance.bench import kernels
+from conformance.bench.__main__ import command
+from conformance.bench.emission import emit
+from conformance.bench.figures import Figure
+from conformance.bench.inputs import groups, lanes, timed, within
+from conformance.bench.kernels import FLAT, LATENCY, THROUGHPUT, Mode
+from conformance.bench.ratios import net_ratio, spread, straightness
+from conformance.bench.record import (
+    complete,
+    described_device,
+    function_data,
+    method_data,
+    rounded,
+    slug,
+    timing_data,
+)
+from conformance.bench.run import Options
+from conformance.bench.selfcheck import EXPECTED, self_checks
+from conformance.bench.timing import Bench, Effort
+from conformance.bench.worker import Job
+from targets import Device, TimedRuntime
+
+SHAPES = ("safe_pow", "sin_angle", "fakefur_shade", "pcg_hash")
+"""Scalars; vectors; structs; integers."""
+TINY = Effort(rounds=3, seconds=2e-4, launches=0.0)
+LANES = 64
+STEPS = 3
+
+
+@pytest.fixture(scope="module")
+def library() -> Library:
+    return load_library()
+
+
+def words_of(library: Library, name: str) -> Words:
+    function = library.function(name)
+    drawn = cases.draw(function, cases.UNIFORM, LANES, 1)
+    types = {p.name: p.type for p in function.parameters}
+    arrays, count = convert_inputs(types, drawn, arithmetic("float32"), name)
+    return flatten(list(arrays.values()), count)
+
+
+@pytest.mark.parametrize("mode", [LATENCY, THROUGHPUT, FLAT], ids=lambda mode: mode.name)
+@pytest.mark.parametrize("name", SHAPES)
+def test_kernels_build_and_run(library: Library, runtime: TimedRuntime, name: str, mode: Mode) -> None:
+    target = runtime.device.target
+    given = kernels.words(words_of(library, name), STEPS)
+    for text in (kernels.kernel(library, name, target, mode), kernels.baseline(library, name, target, mode)):
+        prepared = runtime.prepare(text, given, 1)
+        try:
+            prepared.launch()
+            assert prepared.read().shape == (1, LANES)
+        finally:
+            prepared.release()
+
+
+@pytest.mark.parametrize("name", ["sin_angle", "pcg_hash"])
+def test_a_chain_ends_with_the_functions_own_value(
+    library: Library, runtime: TimedRuntime, name: str
+) -> None:
+    """eps and the mask are 0, so that the last evaluation sees the inputs unchanged."""
+    words = words_of(library, name)
+    direct = kernels.kernel(library, name, runtime.device.target, FLAT_ONE)
+    chained = kernels.kernel(library, name, runtime.device.target, LATENCY)
+    once = runtime.run(direct, kernels.words(words, 1), 1)
+    assert np.array_equal(runtime.run(chained, kernels.words(words, STEPS), 1), once)
+
+
+FLAT_ONE = Mode("flat", 1, looped=False)
+
+
+def test_tiny_measurement(library: Library, runtime: TimedRuntime) -> None:
+    bench = Bench(library, runtime, TINY)
+    (group,) = groups(library, ["strand_specular"])
+    found = bench.group(group, THROUGHPUT)
+    assert set(found) == {f.name for f in group.members}
+    for timing in found.values():
+        assert timing.gross_ns > 0.0
+        assert np.isfinite([timing.net_ns.low, timing.net_ns.median, timing.net_ns.high]).all()
+    own = found[group.base.name].ratio
+    assert own is None or (own.low, own.median, own.high) == (1.0, 1.0, 1.0)
+
+
+def test_self_checks_are_numbers(library: Library, runtime: TimedRuntime) -> None:
+    (group,) = groups(library, ["sin_angle"])
+    checks = self_checks(Bench(library, runtime, TINY), group)
+    assert set(checks) == set(EXPECTED)
+    assert np.isfinite(list(checks.values())).all()
+
+
+def test_quartiles() -> None:
+    found = spread([5.0, 1.0, 3.0, 2.0, 4.0])
+    assert (found.low, found.median, found.high) == (2.0, 3.0, 4.0)
+
+
+def test_net_ratio_ignores_a_common_drift() -> None:
+    drift = np.linspace(1.0, 3.0, 20)
+    found = net_ratio(list(7.0 * drift), list(5.0 * drift), list(1.0 * drift))
+    assert found is not None
+    assert np.allclose([found.low, found.median, found.high], 1.5)
+
+
+def test_no_ratio_to_a_reference_that_is_lost() -> None:
+    assert net_ratio([2.0, 2.0], [1.001, 0.999], [1.0, 1.0]) is None
+
+
+def test_straightness() -> None:
+    assert straightness((10, 20, 40), (1.0, 2.0, 4.0)) == pytest.approx(1.0)
+    assert straightness((10, 20, 40), (1.0, 3.0, 4.0)) == pytest.approx(1.5)
+
+
+def test_groups_are_complete(library: Library) -> None:
+    found = groups(library)
+    members = [f.name for group in found for f in group.members]
+    assert len(members) == len(set(members))
+    assert {f.name for f in library.public.values() if f.base is not None} <= set(members)
+    assert groups(library, ["sin_angle_cosine"]) == groups(library, ["sin_angle"])
+
+
+def test_a_bound_cuts_the_domains_it_names(library: Library) -> None:
+    function = library.function("strand_specular")
+    bounds = [
+        Bound(function.name, "absolute", 1.0, "", "", where={"exponent": (1.0, 1.0)}),
+        Bound(
+            function.name,
+            "absolute",
+            1.0,
+            "",
+            "",
+            where={"exponent": (1.0, 1000.0), "angle(l, t)": (0.1, 1.0)},
+        ),
+    ]
+    inside, chosen = within(function, bounds)
+    assert chosen is bounds[1]
+    domain = next(p.domain for p in inside.parameters if p.name == "exponent")
+    assert isinstance(domain, Interval)
+    assert (domain.low, domain.high) == (1.0, 1000.0)
+    assert within(function, bounds[:1]) == (function, None)
+
+
+def test_inputs_suit_all_members(library: Library) -> None:
+    for group in groups(library):
+        words = lanes(library, group, LANES)
+        slots = sum(len(leaves(p.type)) for p in group.base.parameters)
+        assert words.shape == (slots, LANES), group.base.name
+        drawn = cases.draw(timed(library, group), cases.UNIFORM, LANES, 1)
+        assert evaluate(library, group.base.name, drawn) is not None
+
+
+def small_result(library: Library) -> dict[str, Any]:
+    device = Device("glsl", "OpenGL 4.5", "Mesa", "llvmpipe (LLVM 15)")
+    times = {
+        "net_ns": 1.0,
+        "net_ns_quartiles": [0.9, 1.1],
+        "gross_ns": 2.0,
+        "ratio": 0.5,
+        "ratio_quartiles": [0.4, 0.6],
+    }
+    error = {"measure": "relative", "max": 2.8e-7, "p999": 1e-7, "median": 1e-8, "not_finite": 0, "inputs": 9}
+    functions = [
+        {
+            **function_data(library, f, "sin_angle"),
+            "speed": {"throughput": times},
+            "error": {**error, "domain": "all"},
+        }
+        for f in groups(library, ["sin_angle"])[0].members
+    ]
+    figure = Figure("sin_angle", "1e-7 rad", "glsl", 5e-7, 2.8e-7, "relative").as_data()
+    result = {
+        "device": described_device(device),
+        "method": {"clock": "CPU time"},
+        "self_checks": {"function": "sin_angle"},
+        "functions": functions,
+        "figures": [figure],
+    }
+    return complete(result, {"before": [0.0], "after": [0.0]})
+
+
+def test_recorded_results_reach_the_readme_and_the_list(library: Library, tmp_path: Path) -> None:
+    result = small_result(library)
+    assert slug(result["device"]) == "glsl-llvmpipe"
+    assert speed(library, tmp_path / "nothing") == ""
+    (tmp_path / "glsl-llvmpipe.json").write_text(json.dumps(result), encoding="utf-8")
+    table = speed(library, tmp_path)
+    assert "| `sin_angle` | relative | 1 ns | 2.8e-07 |" in table
+    assert "| `sin_angle_cosine` | relative | x 0.50 | 2.8e-07 |" in table
+    (entry,) = costs(library, library.function("sin_angle"), tmp_path)
+    assert entry["driver"] == "llvmpipe"
+    assert entry["current"]
+    assert costs(library, library.function("pcg_hash"), tmp_path) == []
+
+
+def test_a_result_of_another_schema_is_refused(library: Library, tmp_path: Path) -> None:
+    (tmp_path / "old.json").write_text('{"schema": 0}', encoding="utf-8")
+    with pytest.raises(UserError, match=r"old\.json"):
+        speed(library, tmp_path)
+
+
+def test_rounding() -> None:
+    assert rounded({"a": [1.23456789, float("inf")], "b": (3, None)}) == {"a": [1.235, None], "b": [3, None]}
+
+
+def test_figures_are_met_up_to_their_goal() -> None:
+    assert Figure("x", "", "", 1.0, 1.0, "").met is True
+    assert Figure("x", "", "", 1.0, 1.1, "").met is False
+    assert Figure("x", "", "", 1.0, float("nan"), "").met is False
+    assert Figure("x", "", "", None, 1.0, "").met is None
+
+
+def test_a_job_survives_the_way_to_its_worker() -> None:
+    options = Options.quick(("sin_angle",))
+    job = Job("glsl", options.functions, options.effort, options.uniform, options.family, options.figures)
+    assert Job.from_json(job.to_json()) == job
+
+
+def test_timing_data_without_a_ratio(library: Library, runtime: TimedRuntime) -> None:
+    bench = Bench(library, runtime, TINY)
+    (group,) = groups(library, ["sin_angle"])
+    data = timing_data(bench.group(group, LATENCY)[group.base.name])
+    assert set(data) == {"net_ns", "net_ns_quartiles", "gross_ns", "ratio", "ratio_quartiles"}
+    assert method_data(bench)["rounds"] == TINY.rounds
+
+
+def test_emission_is_measured_and_repeats() -> None:
+    runs = [emit(["--target", "glsl", "--function", "sin_angle"], hash_seed=seed) for seed in ("0", "1")]
+    assert runs[0].digest == runs[1].digest
+    assert all(min(run.wall, run.user, run.megabytes) > 0.0 for run in runs)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--function", "sin_angel"], 'did you mean "sin_angle"'),
+        (["--target", "glls"], 'did you mean "glsl"'),
+        (["--record", "--quick"], "--record keeps whole measurements"),
+    ],
+)
+def test_bad_usage_is_one_sentence(arguments: list[str], words: str) -> None:
+    answer = CliRunner().invoke(command, arguments)
+    assert isinstance(answer.exception, UserError)
+    assert words in str(answer.exception)
