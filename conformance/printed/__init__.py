@@ -1,0 +1,1 @@
+"""What each misprint of the lecture does: the printed and the right form side by side, measured and drawn."""
