@@ -103,8 +103,7 @@ def _speed_method(results: list[dict[str, Any]]) -> str:
     return (
         "Time of a base function: nanoseconds per evaluation above a kernel that adds up the inputs, eight "
         "independent chains, one thread; of the others: its multiple, the median of interleaved rounds. A "
-        "ratio holds for its driver only. Error: largest over uniform and hard inputs of the base's domain; of "
-        f"a printed form, against the printed formula. {first['machine']['cpu']}; {drivers}; "
-        f"{first['method']['clock']}. `./dev bench` measures anew; [conformance/bench](conformance/bench) says "
-        "how."
+        "ratio holds for its driver only. Error: largest over uniform and hard inputs; of a printed form, "
+        f"against the printed formula. {first['machine']['cpu']}; {drivers}; {first['method']['clock']}. "
+        "`./dev bench` measures anew; [conformance/bench](conformance/bench) says how."
     )

@@ -1,8 +1,8 @@
 """The error that stands beside a speed: every member of a group on the same inputs, in the same measure.
 
-The inputs are uniform and hard ones from the domain that all members accept and for which the base declares
-a bound; the measure is that of this bound. Outside the domain of its own bound a variant may be far off, and
-that is what the figure shows. A printed form is held against the printed formula.
+The inputs are uniform and hard ones from the ranges of parameters that all members accept and for which they
+declare a bound; the measure is that of the base's. Where directions come close to each other a variant may be
+far off its base, and that is what the figure shows. A printed form is held against the printed formula.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy.typing as npt
 from codegen.bounds import Bound
 from codegen.ir.nodes import Function
 from codegen.library import Library
-from conformance.bench.inputs import Group, by_position, common, within
+from conformance.bench.inputs import Group, by_position, declared, domains
 from conformance.check import measure
 from conformance.check.engine import Backend, draws
 from conformance.check.features import applies
@@ -53,7 +53,7 @@ def errors(
     uniform, family  number of random inputs, and most inputs of each hard family
     returns          no entry for a member without a reference; nothing where the base has no bound
     """
-    inside, bound = within(common(group), library.bounds.get(group.base.name, ()))
+    inside, bound = declared(library, group)
     if bound is None:
         return "", {}
     judge = replace(bound, field="")
@@ -72,15 +72,14 @@ def errors(
             got = on.run(library, f.name, by_position(f, d.inputs))
             parts.setdefault(f.name, []).append(measure.error(judge, got, expected[reference])[chosen])
     found = {name: _summary(bound.measure, np.concatenate(e)) for name, e in parts.items()}
-    return _in_words(bound, group.base, common(group)), found
+    return _in_words(bound, group.base, inside), found
 
 
 def _in_words(bound: Bound, base: Function, cut: Function) -> str:
-    """The bound's domain, and where the members' signatures together allow less than the base's."""
+    """The bound's domain, and where the members together allow less than the base's signature."""
+    whole = domains(base)
     less = [
-        f"{p.name} {p.domain.describe()}"
-        for p, whole in zip(cut.parameters, base.parameters, strict=True)
-        if p.domain is not None and p.domain != whole.domain
+        f"{path} {d.describe()}" for path, d in domains(cut).items() if d is not None and d != whole[path]
     ]
     return "; ".join([bound.domain, *less])
 

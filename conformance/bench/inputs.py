@@ -120,12 +120,28 @@ def _has_width(domain: Domain | None, type_: Any) -> bool:
     return not isinstance(domain, Interval | Length) or domain.low < domain.high
 
 
-def timed(library: Library, group: Group) -> Function:
-    """The base with domains inside a declared bound of every member, as far as they have one in common."""
-    function = common(group)
-    for f in group.members:
-        function, _ = within(function, library.bounds.get(f.name, ()))
-    return function
+def declared(library: Library, group: Group) -> tuple[Function, Bound | None]:
+    """The base, its domains cut down to where every member declares a bound; and the base's bound there.
+
+    A member's widest bound counts, so that this cuts no more than it must.
+    """
+    function, bound = within(common(group), library.bounds.get(group.base.name, ()))
+    for f in group.variants:
+        cuts = [within(function, [b])[0] for b in library.bounds.get(f.name, ()) if within(function, [b])[1]]
+        if cuts and all(domains(cut) != domains(function) for cut in cuts):
+            function = cuts[0]
+    return function, bound
+
+
+def domains(function: Function) -> dict[str, Domain | None]:
+    """The domain of every parameter and field, by path."""
+    found: dict[str, Domain | None] = {}
+    for p in function.parameters:
+        if isinstance(p.type, Struct):
+            found |= {f"{p.name}.{f.name}": f.domain for f in p.type.fields}
+        else:
+            found[p.name] = p.domain
+    return found
 
 
 def lanes(library: Library, group: Group, count: int) -> Words:
@@ -133,7 +149,7 @@ def lanes(library: Library, group: Group, count: int) -> Words:
 
     returns  (slots, count); points repeat where few are fit
     """
-    drawn = cases.draw(timed(library, group), cases.UNIFORM, 2 * count, SEED)
+    drawn = cases.draw(declared(library, group)[0], cases.UNIFORM, 2 * count, SEED)
     good = np.ones(2 * count, np.bool_)
     for f in group.members:
         value = evaluate(library, f.name, by_position(f, drawn))

@@ -59,7 +59,7 @@ def described_device(device: Device) -> dict[str, str]:
 def method_data(bench: Bench) -> dict[str, Any]:
     """How the times were taken."""
     return {
-        "clock": "CPU time of the process" if bench.software else "wall",
+        "clock": bench.clock_name,
         "driver_threads": 1 if bench.software else None,
         "order": "every kernel forwards and backwards in each round (A B B A), the first one changing",
         "rounds": bench.effort.rounds,

@@ -83,15 +83,25 @@ def self_check_line(result: Mapping[str, Any]) -> str:
 
 
 def figure_table(figures: Iterable[Mapping[str, Any]]) -> Table:
-    """Goals and what was measured."""
-    table = Table(title="Figures", box=_box(), title_justify="left")
-    for heading in ("figure", "domain", "driver", "goal", "measured", "unit", ""):
-        table.add_column(heading, no_wrap=heading in ("figure", "unit"))
+    """Goals and what was measured, one column per driver; the last one where no driver takes part."""
+    rows: dict[tuple[Any, ...], dict[str, Mapping[str, Any]]] = {}
     for f in figures:
-        verdict = {True: "met", False: "NOT MET", None: ""}[f["met"]]
-        goal = "" if f["goal"] is None else number(f["goal"])
-        table.add_row(f["what"], f["domain"], f["driver"], goal, number(f["measured"]), f["unit"], verdict)
+        rows.setdefault((f["what"], f["domain"], f["goal"], f["unit"]), {})[f["driver"]] = f
+    drivers = list(dict.fromkeys(driver for row in rows.values() for driver in row))
+    table = Table(title="Figures", box=_box(), title_justify="left")
+    for heading in ("figure", "domain", "goal", *(d or "measured" for d in drivers), "unit", ""):
+        table.add_column(heading, no_wrap=heading in ("figure", "unit"))
+    for (what, domain, goal, unit), row in rows.items():
+        measured = [number(row[d]["measured"]) if d in row else "" for d in drivers]
+        table.add_row(
+            what, domain, "" if goal is None else number(goal), *measured, unit, _verdict(row.values())
+        )
     return table
+
+
+def _verdict(figures: Iterable[Mapping[str, Any]]) -> str:
+    found = {f["met"] for f in figures}
+    return "NOT MET" if False in found else "met" if True in found else ""
 
 
 def _box() -> box.Box | None:

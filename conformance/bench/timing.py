@@ -1,14 +1,14 @@
 """Timing the variants of a function against each other on one runtime.
 
 All kernels of a group run in turn, forwards and backwards (A B B A), in every round; a ratio is formed within
-a round, and the median over the rounds counts. Software drivers are timed by the CPU time of the process,
-which other programs on the machine hardly change; hardware by the clock on the wall.
+a round, and the median over the rounds counts. Software drivers are timed by the CPU time of the thread that
+computes, see clocks.py; hardware by the clock on the wall.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -18,8 +18,9 @@ from codegen.backends import complete_program
 from codegen.execute import Words
 from codegen.library import Library
 from conformance.bench import kernels
+from conformance.bench.clocks import SECONDS, Clock, driver_clock
 from conformance.bench.inputs import Group, lanes
-from conformance.bench.kernels import FLAT, Mode
+from conformance.bench.kernels import FLAT, THROUGHPUT, Mode
 from conformance.bench.ratios import Spread, net, net_ratio, spread
 from targets import Device, TimedRuntime
 from targets.protocol import Prepared
@@ -85,10 +86,29 @@ class Bench:
         self.runtime = runtime
         self.effort = effort
         self.software = is_software(runtime.device)
-        self.clock: Callable[[], float] = time.process_time if self.software else time.perf_counter
         self.lanes = SOFTWARE_LANES if self.software else HARDWARE_LANES
+        self.clock: Clock = time.perf_counter
+        self.clock_name = "wall"
+        if self.software:
+            self.clock, self.clock_name = self.find_clock()
         self.empty = self.empty_launch()
         self.seconds = max(effort.seconds, effort.launches * self.empty)
+
+    def find_clock(self) -> tuple[Clock, str]:
+        """The clock of a software driver, found by a launch that takes long."""
+        group = Group(next(iter(self.library.public.values())), ())
+        words, steps, taken = self.words(group, THROUGHPUT), 1, 0.0
+        text = kernels.kernel(self.library, group.base.name, self.runtime.device.target, THROUGHPUT)
+        while taken < SECONDS and steps < MOST_STEPS:
+            steps *= 4
+            with self.prepared({"": text}, words, steps) as ready:
+                ready[""].launch()
+                begin = time.perf_counter()
+                ready[""].launch()
+                taken = time.perf_counter() - begin
+        with self.prepared({"": text}, words, steps) as ready:
+            ready[""].launch()
+            return driver_clock(ready[""].launch)
 
     def empty_launch(self) -> float:
         """Seconds that a kernel takes which does next to nothing."""
