@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from conformance.printed import fur, shells, strands
-from conformance.printed.misprint import N, value
+from conformance.printed.misprint import N, measure_every_light, value
 from conformance.printed.places import LAYERS, Array, direction, hemisphere, over_hemisphere
 
 FIGURES = Path(__file__).with_name("figures.toml")
@@ -65,6 +65,13 @@ def banks_sum() -> float:
     l, v = (np.roll(hemisphere(5, 5)[0], shift, axis=0) for shift in (0, 371))
     right, printed = strands.cosine_banks(v, l)
     return float(np.abs(right + printed).max())
+
+
+def kajiya_mean() -> float:
+    """Mean error of the strand cosine after Kajiya and Kay over every light."""
+    found = [measure_every_light(m) for m in strands.MISPRINTS if m.key == "strand-cosine-kajiya"]
+    assert found[0] is not None
+    return found[0][1]
 
 
 def reflection_angles() -> Array:
@@ -126,6 +133,7 @@ def last_shell() -> float:
 
 COMPUTED: dict[str, Callable[..., float]] = {
     "banks_sum": banks_sum,
+    "kajiya_mean": kajiya_mean,
     "reflection_mean": reflection_mean,
     "reflection_largest": reflection_largest,
     "hair_area_ratio": hair_area_ratio,

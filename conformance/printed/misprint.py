@@ -11,13 +11,10 @@ import numpy as np
 
 from codegen.evaluate import evaluate
 from codegen.library import load_library
-from conformance.printed.places import Array, Places, ball, direction, hemisphere
+from conformance.printed.places import Array, Places, ball, direction, pairs
 
 N = direction(0, 0)
 """The surface normal of every example."""
-VIEWS = (6, 6)
-LIGHTS = (15, 30)
-"""Steps in degrees, polar and azimuth, of the two hemispheres behind the figures for every light."""
 TIE = 1e-9
 """Relative; of equally bad places the first is named, whatever the last bits say."""
 
@@ -118,11 +115,9 @@ def measure_every_light(misprint: Misprint, quantity: Quantity | None = None) ->
     """Largest and mean error over all pairs of hemispheres of l and v; None where l alone is varied."""
     if misprint.light is None:
         return None
-    views, view_weights, _ = hemisphere(*VIEWS)
-    lights, light_weights, _ = hemisphere(*LIGHTS)
-    v, l = np.tile(views, (len(lights), 1)), np.repeat(lights, len(views), axis=0)
+    v, l, weights = pairs()
     error = distance((quantity or misprint.quantity)(v, l))
-    return float(error.max()), float(np.outer(light_weights, view_weights).ravel() @ error)
+    return float(error.max()), float(weights @ error)
 
 
 def distance(pair: Pair) -> Array:

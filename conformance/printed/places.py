@@ -14,6 +14,10 @@ LAYERS = 16
 """Shells of the example coat."""
 
 
+LATTICE = 1 << 16
+"""Pairs of directions behind a mean over every light."""
+
+
 @dataclass(frozen=True)
 class Places:
     """Points that a misprint is measured at and drawn over.
@@ -47,6 +51,25 @@ def hemisphere(polar_step: int, azimuth_step: int) -> tuple[Array, Array, Array]
     angles = np.stack(np.meshgrid(polar, azimuth, indexing="ij"), axis=-1).reshape(-1, 2).astype(np.float64)
     weights = np.repeat((np.cos(low) - np.cos(high)) / len(azimuth), len(azimuth))
     return _directions(angles[:, 0], angles[:, 1]), weights / weights.sum(), angles
+
+
+def pairs() -> tuple[Array, Array, Array]:
+    """Pairs of directions of two hemispheres: an even lattice, and a coarse grid with zenith and horizon.
+
+    The grid weighs nothing: it is there because maxima lie at the ends.
+    returns  two arrays of directions (N, 3), weights (N,) with sum 1
+    """
+    # The lattice of four dimensions whose steps are powers of the root of x^5 = x + 1 (Roberts 2018).
+    root = 1.0
+    for _ in range(64):
+        root = (1.0 + root) ** 0.2
+    steps = root ** -np.arange(1.0, 5.0)
+    u = (0.5 + np.arange(1, LATTICE + 1)[:, None] * steps) % 1.0
+    first, second = (_directions(np.degrees(np.arccos(u[:, k])), 360.0 * u[:, k + 1]) for k in (0, 2))
+    coarse, fine = hemisphere(30, 45)[0], hemisphere(15, 15)[0]
+    first = np.concatenate([first, np.tile(fine, (len(coarse), 1))])
+    second = np.concatenate([second, np.repeat(coarse, len(fine), axis=0)])
+    return first, second, np.where(np.arange(len(first)) < LATTICE, 1.0 / LATTICE, 0.0)
 
 
 def over_hemisphere() -> Places:

@@ -28,7 +28,8 @@ number is computed in float64 from the library itself by `python -m conformance.
   zenith and horizon included, each direction weighted with the solid angle of its cell. Of colours, the
   component that is off most. For the shadow of shells they are over its 16 shells.
 - **Where** is the direction of the largest error, the first of several that are equally bad.
-- **Every light**: largest and mean over all pairs of l and v, on coarser grids. Elsewhere l is the example's.
+- **Every light**: mean over an even lattice of 65536 pairs of l and v; the largest of these and of a coarse
+  grid with zenith and horizon. Elsewhere l is the example's.
 - **Pictures** show the hemisphere from above in an equal-area projection: n in the middle, the horizon at
   the rim, x to the right. In the differences blue is printed too dark, orange too bright.
 """
