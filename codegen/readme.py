@@ -94,7 +94,9 @@ def _time(timing: dict[str, Any], *, own: bool) -> str:
 
 
 def _short(value: float | None) -> str:
-    return "" if value is None else f"{value:.2g}"
+    if value is None:
+        return ""
+    return f"{value:.0f}" if 100.0 <= value < 1e4 else f"{value:.2g}"
 
 
 def _speed_method(results: list[dict[str, Any]]) -> str:

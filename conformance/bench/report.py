@@ -16,8 +16,7 @@ LETTERS = {"add": "+", "multiply": "*", "divide": "/", "root": "r", "exponential
 LEGEND = (
     "net ns per evaluation above a kernel that adds up the inputs; T throughput (eight chains), L latency "
     "(one chain), F flat (eight chains, no loop); ratio to the base with quartiles, for this driver only; "
-    "error beside the reference over uniform and hard inputs of the base's domain, printed forms beside the "
-    "printed formula; operations as written: "
+    "error over uniform and hard inputs, of printed forms beside the printed formula; operations as written: "
     + ", ".join(f"{letter} {name}" for name, letter in LETTERS.items())
 )
 
@@ -30,7 +29,9 @@ def console() -> Console:
 
 def number(value: float | None, digits: int = 3) -> str:
     """A number shortly; a dash for none."""
-    return "-" if value is None else f"{value:.{digits}g}"
+    if value is None:
+        return "-"
+    return f"{value:.0f}" if 100.0 <= abs(value) < 1e4 else f"{value:.{digits}g}"
 
 
 def ratio(speed: Mapping[str, Any]) -> str:
