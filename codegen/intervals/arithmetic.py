@@ -1,0 +1,281 @@
+"""Sums, products, quotients and orderings of float intervals under a table."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from codegen.intervals import numbers
+from codegen.intervals.accuracy import Row, Ulp
+from codegen.intervals.causes import Codes, first
+from codegen.intervals.context import Context
+from codegen.intervals.numbers import LARGEST, SMALLEST, Array
+from codegen.intervals.values import Range
+
+PER_ULP = 1.0 + 2.0**-20
+"""Granted on a number of ULP that varies with the argument: it may then be taken at the interval's ends."""
+
+
+def settle(
+    context: Context, low: Array, high: Array, codes: Codes = None, product: tuple[Array, Array] | None = None
+) -> Range:
+    """A value from its float32 ends: overflow is anything, and below the normal numbers lies what may flush.
+
+    A result below 2^-126 may become 0 where the table flushes, and so may one that only rounding makes
+    normal (Vulkan says so); its neighbours are then not told apart: the interval reaches 0 and the smallest
+    normal number.
+    """
+    if numbers.unusual(low) or numbers.unusual(high):
+        same = low is high
+        low, high = _below_normal(context, low, high)
+        over = ~((low >= -LARGEST) & (high <= LARGEST))
+        if over.any():
+            fresh = over if codes is None else over & (codes == 0)
+            codes = context.unbounded(codes, fresh, "", "the result may overflow")
+            low, high, same = np.where(over, -np.inf, low), np.where(over, np.inf, high), False
+        if same and (low == high).all():
+            high = low
+    if codes is not None:
+        low, high = np.where(codes > 0, -np.inf, low), np.where(codes > 0, np.inf, high)
+    return Range(low, high, codes, product)
+
+
+def _below_normal(context: Context, low: Array, high: Array) -> tuple[Array, Array]:
+    small_low = (np.abs(low) < SMALLEST) & (low != 0.0)
+    small_high = (np.abs(high) < SMALLEST) & (high != 0.0)
+    if context.table.flush:
+        if small_low.any():
+            low = np.where(small_low, np.where(low > 0.0, 0.0, -SMALLEST), low)
+        if small_high.any():
+            high = np.where(small_high, np.where(high < 0.0, 0.0, SMALLEST), high)
+    else:
+        step = numbers.DENORMAL_STEP
+        low = np.where(small_low, np.floor(low / step) * step, low)
+        high = np.where(small_high, np.ceil(high / step) * step, high)
+    return low, high
+
+
+def from_input(context: Context, given: Array) -> Range:
+    """Exact float32 inputs; one below the normal numbers may be read as 0."""
+    a = given.astype(np.float64)
+    small = (np.abs(a) < SMALLEST) & (a != 0.0)
+    if context.table.flush and small.any():
+        return Range(
+            np.where(small, np.minimum(a, 0.0), a),
+            np.where(small, np.maximum(a, 0.0), a),
+            _not_finite(context, a),
+        )
+    return Range(a, a, _not_finite(context, a))
+
+
+def _not_finite(context: Context, a: Array) -> Codes:
+    bad = ~np.isfinite(a)
+    return context.unbounded(None, bad, "", "the input is not finite") if bad.any() else None
+
+
+def rounded(context: Context, low: Array, high: Array) -> tuple[Array, Array]:
+    """The float32 results of correct rounding of exact values between two ends."""
+    if context.table.rounding == "nearest":
+        near = numbers.nearest(low)
+        return near, near if high is low else numbers.nearest(high)
+    return numbers.down(low), numbers.up(high)
+
+
+def negate(a: Range) -> Range:
+    """-a."""
+    low = -a.low
+    product = None if a.product is None else (-a.product[1], -a.product[0])
+    return Range(low if a.is_point else -a.high, low, a.cause, product)
+
+
+def add(context: Context, a: Range, b: Range) -> Range:
+    """a + b, with the unrounded product of an operand where the table allows a multiply-add."""
+    codes = first(a.cause, b.cause)
+    if context.table.rounding == "nearest":
+        total = a.low + b.low
+        low, high = rounded(context, total, total if a.is_point and b.is_point else a.high + b.high)
+        if context.table.fused:
+            low, high = _with_fused(low, high, a, b)
+            low, high = _with_fused(low, high, b, a)
+        return settle(context, low, high, codes)
+    # Rounding either way, the rounded product's interval holds the unrounded product: fusing adds nothing.
+    low, high = numbers.sum_below(a.low, b.low), numbers.sum_above(a.high, b.high)
+    return settle(context, numbers.down(low), numbers.up(high), codes)
+
+
+def _with_fused(low: Array, high: Array, a: Range, b: Range) -> tuple[Array, Array]:
+    if a.product is None:
+        return low, high
+    fused_low, fused_high = numbers.sum_below(a.product[0], b.low), numbers.sum_above(a.product[1], b.high)
+    # The sum of an exact product and a float32 needs more than float64 keeps: rounded outwards.
+    return np.minimum(low, numbers.down(fused_low)), np.maximum(high, numbers.up(fused_high))
+
+
+def subtract(context: Context, a: Range, b: Range) -> Range:
+    """a - b; 0 where both are one value."""
+    if a is b and a.cause is None:
+        zero = np.zeros(1)
+        return Range(zero, zero)
+    return add(context, a, negate(b))
+
+
+def multiply(context: Context, a: Range, b: Range) -> Range:
+    """a b; a square where both are one value. Products of float32 are exact in float64."""
+    low, high = exact_product(a, b)
+    codes = first(a.cause, b.cause)
+    kept = (low, high) if context.table.fused and context.table.rounding == "nearest" else None
+    low, high = rounded(context, low, high)
+    return settle(context, low, high, codes, kept)
+
+
+def exact_product(a: Range, b: Range) -> tuple[Array, Array]:
+    """Ends of the exact products of two intervals."""
+    if a.is_point and b.is_point:
+        exact = a.low * b.low
+        return exact, exact
+    if a is b:
+        far = np.maximum(np.abs(a.low), np.abs(a.high))
+        near = np.maximum(np.maximum(a.low, -a.high), 0.0)
+        return near * near, far * far
+    if a.is_point:
+        a, b = b, a
+    p, q = a.low * b.low, a.high * b.low
+    if b.is_point:
+        return np.minimum(p, q), np.maximum(p, q)
+    r, s = a.low * b.high, a.high * b.high
+    return (
+        np.minimum(np.minimum(p, q), np.minimum(r, s)),
+        np.maximum(np.maximum(p, q), np.maximum(r, s)),
+    )
+
+
+def outside(row: Row, operand: str, x: Range) -> Array | None:
+    """Where an operand may lie outside the magnitudes for which the row promises anything."""
+    found = None
+    if operand in row.magnitude:
+        found = outside_magnitude(row.magnitude[operand], x)
+        if operand in row.zero:
+            found &= ~((x.low == 0.0) & (x.high == 0.0))
+    if operand in row.normal:
+        near = np.maximum(x.low, -x.high)
+        found = (near < SMALLEST) if found is None else found | (near < SMALLEST)
+    return found
+
+
+def outside_magnitude(exponents: tuple[int, int], x: Range) -> Array:
+    """Where |x| may be below the first or above the second of two powers of two."""
+    near = np.maximum(x.low, -x.high)
+    far = np.maximum(np.abs(x.low), np.abs(x.high))
+    return np.asarray((near < 2.0 ** exponents[0]) | (far > 2.0 ** exponents[1]))
+
+
+def divide(context: Context, row: Row, x: Range, y: Range) -> Range:
+    """x / y within the row's ULP; anything where y may be 0 or outside its promised magnitudes.
+
+    The sign of a quotient is that of its operands', and 0 / y is 0: no division is known that breaks either,
+    although 2.5 ULP of a result near 0 would allow it to.
+    """
+    codes = first(x.cause, y.cause)
+    may_vanish = (y.low <= 0.0) & (y.high >= 0.0)
+    codes = context.unbounded(codes, may_vanish & _clear(codes), "y", "the divisor may be 0")
+    for operand, value in (("y", y), ("x", x)):
+        bad = outside(row, operand, value)
+        if bad is not None and row.reciprocal is not None:
+            bad &= ~((x.low == 1.0) & (x.high == 1.0)) | outside_magnitude(row.reciprocal, y)
+        if bad is not None:
+            codes = context.unbounded(codes, bad & _clear(codes), operand, "outside the promised magnitudes")
+    low, high = _quotient(x, y)
+    assert isinstance(row.accuracy, Ulp)
+    low, high = within_ulp(low, high, row.accuracy.ulps, row.accuracy.ulps)
+    return settle(context, low, high, codes)
+
+
+def _clear(codes: Codes) -> Array | bool:
+    return True if codes is None else codes == 0
+
+
+def _quotient(x: Range, y: Range) -> tuple[Array, Array]:
+    """Ends of the exact quotients for y of one sign, rounded by float64."""
+    if x.is_point and y.is_point:
+        q = x.low / y.low
+        return q, q
+    x_low, x_high, y_low, y_high = x.low, x.high, y.low, y.high
+    negative = y_high < 0.0
+    if negative.any():
+        x_low, x_high = np.where(negative, -x_high, x_low), np.where(negative, -x_low, x_high)
+        y_low, y_high = np.where(negative, -y_high, y_low), np.where(negative, -y_low, y_high)
+    return (
+        x_low / np.where(x_low >= 0.0, y_high, y_low),
+        x_high / np.where(x_high >= 0.0, y_low, y_high),
+    )
+
+
+def within_ulp(
+    low: Array, high: Array, ulps_low: float | Array, ulps_high: float | Array
+) -> tuple[Array, Array]:
+    """Float32 results within some ULP of exact values between two ends, which float64 gave; sign kept.
+
+    The spacing doubles at a power of two, so the value that allows the least result may lie a few ULP inside
+    the interval: the larger spacing is taken where one is within reach.
+    """
+    slack = np.abs(low) * numbers.FLOAT64_MARGIN
+    least = low - slack
+    if low is high:
+        most = high + slack
+        spacing = numbers.ulp(np.maximum(np.abs(least), np.abs(most))) * PER_ULP
+        first_low, last_high = least - spacing * ulps_low, most + spacing * ulps_high
+    else:
+        most = high + np.abs(high) * numbers.FLOAT64_MARGIN
+        spacing = numbers.ulp(least) * PER_ULP
+        inside = np.minimum(least + spacing * ulps_low, most)
+        first_low = least - np.maximum(spacing, numbers.ulp(inside) * PER_ULP) * ulps_low
+        spacing = numbers.ulp(most) * PER_ULP
+        inside = np.maximum(most - spacing * ulps_high, least)
+        last_high = most + np.maximum(spacing, numbers.ulp(inside) * PER_ULP) * ulps_high
+    first_low = np.where(low >= 0.0, np.maximum(first_low, 0.0), first_low)
+    last_high = np.where(high <= 0.0, np.minimum(last_high, 0.0), last_high)
+    return numbers.up(first_low), numbers.down(last_high)
+
+
+def smaller(a: Range, b: Range) -> Range:
+    """min(a, b); anything where either may be anything, since NaN may be among it."""
+    return _ordered(a, b, np.minimum(a.low, b.low), np.minimum(a.high, b.high))
+
+
+def larger(a: Range, b: Range) -> Range:
+    """max(a, b); anything where either may be anything, since NaN may be among it."""
+    return _ordered(a, b, np.maximum(a.low, b.low), np.maximum(a.high, b.high))
+
+
+def _ordered(a: Range, b: Range, low: Array, high: Array) -> Range:
+    codes = first(a.cause, b.cause)
+    if codes is not None:
+        low, high = np.where(codes > 0, -np.inf, low), np.where(codes > 0, np.inf, high)
+    elif a.is_point and b.is_point:
+        high = low
+    return Range(low, high, codes)
+
+
+def clamp(x: Range, least: Range, most: Range) -> Range:
+    """min(max(x, least), most); where least may exceed most also max(min(x, most), least)."""
+    found = smaller(larger(x, least), most)
+    crossed = least.high > most.low
+    if not crossed.any():
+        return found
+    other = larger(smaller(x, most), least)
+    return Range(
+        np.where(crossed, np.minimum(found.low, other.low), found.low),
+        np.where(crossed, np.maximum(found.high, other.high), found.high),
+        found.cause,
+    )
+
+
+def absolute(x: Range) -> Range:
+    """|x|."""
+    if x.is_point:
+        a = np.abs(x.low)
+        return Range(a, a, x.cause)
+    low = np.maximum(np.maximum(x.low, -x.high), 0.0)
+    high = np.maximum(-x.low, x.high)
+    if x.cause is not None:
+        low = np.where(x.cause > 0, -np.inf, low)
+    return Range(low, high, x.cause)

@@ -1,0 +1,197 @@
+"""Walks a function's IR over interval values: calls are inlined by evaluation, loops are unrolled.
+
+An operation on the same values is evaluated once, within a function and across calls: a value is one number,
+however often it is written. (A compiler that computes one value twice in two ways is not modelled.)
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Hashable
+from typing import TypeVar, cast
+
+import numpy as np
+
+from codegen.intervals import logic
+from codegen.intervals.context import Context
+from codegen.intervals.operations import VECTOR_BUILTINS, binary, scalar_builtin, unary
+from codegen.intervals.values import (
+    Range,
+    Single,
+    Truth,
+    Value,
+    Whole,
+    all_of,
+    always,
+    choose,
+    constant,
+    opposite,
+)
+from codegen.ir import nodes as ir
+from codegen.ir.types import F32, I32, Scalar, Struct, Type, Vector
+from codegen.library import Library
+
+Singles = tuple[Single, ...]
+V = TypeVar("V")
+
+
+class Frame:
+    """One call: its locals, which lanes may still run, and what may have been returned."""
+
+    def __init__(
+        self, library: Library, context: Context, function: ir.Function, arguments: dict[str, Value]
+    ):
+        self.library = library
+        self.context = context
+        self.function = function
+        self.scope = dict(arguments)
+        self.result: Value | None = None
+        self.returned = always(False)
+
+    def run(self) -> Value:
+        """The function's value."""
+        caller = self.context.function, self.context.line
+        self.block(self.function.body, always(True))
+        self.context.function, self.context.line = caller
+        assert self.result is not None
+        return self.result
+
+    def block(self, body: tuple[ir.Stmt, ...], active: Truth) -> None:
+        for s in body:
+            self.context.function, self.context.line = self.function.name, s.line
+            match s:
+                case ir.Let():
+                    self.scope[s.name] = self.expr(s.value)
+                case ir.Assign():
+                    live = all_of(active, opposite(self.returned))
+                    self.scope[s.name] = choose(live, self.expr(s.value), self.scope[s.name])
+                case ir.If():
+                    condition = self.truth(s.condition)
+                    self.block(s.then, all_of(active, condition))
+                    self.block(s.orelse, all_of(active, opposite(condition)))
+                case ir.For():
+                    for i in range(s.start, s.stop):
+                        self.scope[s.name] = self.shared(("i32", i), functools.partial(constant, i, True))
+                        self.block(s.body, active)
+                case ir.Return():
+                    value = self.expr(s.value)
+                    live = all_of(active, opposite(self.returned))
+                    self.result = value if self.result is None else choose(live, value, self.result)
+                    self.returned = Truth(self.returned.true | live.true, self.returned.false & live.false)
+
+    def truth(self, e: ir.Expr) -> Truth:
+        value = self.expr(e)
+        assert isinstance(value, Truth)
+        return value
+
+    def expr(self, e: ir.Expr) -> Value:
+        match e:
+            case ir.Const():
+                key = (e.type.name, type(e.value).__name__, e.value, str(e.value))
+                return self.shared(key, lambda: constant(e.value, e.type == I32))
+            case ir.Var():
+                return self.scope[e.name]
+            case ir.Unary():
+                return self.each(e.op, lambda a: unary(self.context, e.op, a[0]), (self.expr(e.operand),))
+            case ir.Binary():
+                parts = (self.expr(e.left), self.expr(e.right))
+                return self.each(e.op, lambda a: binary(self.context, e.op, a[0], a[1]), parts)
+            case ir.Builtin():
+                return self.builtin(e.op, tuple(self.expr(a) for a in e.args))
+            case ir.Call():
+                return self.call(e)
+            case ir.Construct():
+                return self.construct(e, [self.expr(a) for a in e.args])
+            case ir.Convert():
+                return self.convert(e.type, self.expr(e.operand))
+            case ir.Member():
+                value = self.expr(e.value)
+                assert isinstance(value, dict)
+                return value[e.name]
+            case ir.Swizzle():
+                vector = self.expr(e.value)
+                assert isinstance(vector, tuple)
+                chosen = tuple(vector["xyzw".index(c)] for c in e.components)
+                return chosen[0] if len(chosen) == 1 else chosen
+            case ir.Select():
+                condition, if_true, if_false = (self.expr(c) for c in ir.children(e))
+                assert isinstance(condition, Truth)
+                return choose(condition, if_true, if_false)
+
+    def shared(self, key: Hashable, make: Callable[[], Single]) -> Single:
+        """The value under a key, made at its first use; what it is made of is kept alive with it."""
+        memo = self.context.memo
+        if key not in memo:
+            memo[key] = make()
+        return cast(Single, memo[key])
+
+    def each(self, op: str, apply: Callable[[Singles], Single], parts: tuple[Value, ...]) -> Value:
+        """An operation component by component; a scalar operand goes with every component of a vector."""
+        size = max((len(p) for p in parts if isinstance(p, tuple)), default=0)
+        if size == 0:
+            return self.once(op, apply, cast(Singles, parts))
+        columns = [p if isinstance(p, tuple) else (p,) * size for p in parts]
+        return tuple(self.once(op, apply, components) for components in zip(*columns, strict=True))
+
+    def once(self, op: str, apply: Callable[[Singles], V], parts: Singles) -> V:
+        """An operation on these very values; the result of the first time is kept."""
+        names = [id(p) for p in parts]
+        if op in ("+", "*"):
+            names.sort()
+        key = (op, *names)
+        found = self.context.memo.get(key)
+        if found is None:
+            self.context.operation = op
+            found = apply(parts)
+            self.context.memo[key] = found
+            self.context.kept.append(parts)  # an identity in a key must not be used again
+        return cast(V, found)
+
+    def builtin(self, op: str, args: tuple[Value, ...]) -> Value:
+        if op in VECTOR_BUILTINS:
+            vectors = [cast(tuple[Range, ...], a) for a in args]
+            flat = tuple(c for v in vectors for c in v)
+            function = VECTOR_BUILTINS[op]
+            return self.once(op, lambda _: cast(Value, function(self.context, *vectors)), flat)
+        return self.each(op, lambda a: scalar_builtin(self.context, op, a), args)
+
+    def call(self, e: ir.Call) -> Value:
+        function = self.library.function(e.function)
+        arguments = {p.name: self.expr(a) for p, a in zip(function.parameters, e.args, strict=True)}
+        return Frame(self.library, self.context, function, arguments).run()
+
+    def construct(self, e: ir.Construct, parts: list[Value]) -> Value:
+        if isinstance(e.type, Struct):
+            return {f.name: part for f, part in zip(e.type.fields, parts, strict=True)}
+        assert isinstance(e.type, Vector)
+        components: list[Single] = []
+        for part in parts:
+            components += part if isinstance(part, tuple) else [cast(Single, part)]
+        return tuple(components * e.type.size if len(components) == 1 else components)
+
+    def convert(self, type_: Type, value: Value) -> Value:
+        assert isinstance(type_, Scalar)
+
+        def apply(parts: tuple[Single, ...]) -> Single:
+            a = parts[0]
+            if isinstance(a, Range):
+                return a if type_ == F32 else logic.to_integer(self.context, a, type_ == I32)
+            assert isinstance(a, Whole)
+            if type_ == F32:
+                return logic.to_float(self.context, a)
+            return reinterpreted(a, type_ == I32)
+
+        return self.once(f"{type_.name}()", apply, (cast(Single, value),))
+
+
+def reinterpreted(a: Whole, is_signed: bool) -> Whole:
+    """u32 to i32 or back: the same bits; every integer where an interval wraps."""
+    if a.is_signed == is_signed:
+        return a
+    target = Whole(a.low, a.high, is_signed, a.cause)
+    least, most = target.limits
+    fits = (a.low >= least) & (a.high <= most)
+    if a.is_point:
+        exact = np.where(fits, a.low, a.low + (2**32 if a.is_signed else -(2**32)))
+        return Whole(exact, exact, is_signed, a.cause)
+    return Whole(np.where(fits, a.low, least), np.where(fits, a.high, most), is_signed, a.cause)

@@ -1,0 +1,260 @@
+"""The results that a table permits, lane by lane, for a function over arrays of inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from codegen.evaluate.arrays import Array, arithmetic, convert_inputs
+from codegen.evaluate.arrays import Value as Arrays
+from codegen.intervals.arithmetic import from_input
+from codegen.intervals.causes import CauseBook
+from codegen.intervals.context import Context, Ways
+from codegen.intervals.interpreter import Frame
+from codegen.intervals.tables import Table, load_table
+from codegen.intervals.values import Single, Truth, Value, Whole
+from codegen.ir.types import BOOL, F32, I32, Scalar, Struct, Type, Vector, leaves
+from codegen.library import Library
+
+CHUNK = 8192
+"""Lanes evaluated together: few enough for the arrays of an operation to stay in the processor's cache."""
+DEPTH = 8
+"""Forks that one lane is followed through; further ones count by their hull."""
+MOST_PARTS = 64
+"""Ways of one lane that are followed at a time; a lane with more keeps the hull that it has."""
+
+
+@dataclass(frozen=True)
+class Permitted:
+    """Intervals of permitted results.
+
+    low, high   ends, in the shapes of codegen.evaluate.evaluate: float64 for f32, integers, truth values
+    codes       int16 (N,): 0 where every component is bounded, else the number of the first cause
+    causes      the causes in words; number k is causes[k - 1]
+    """
+
+    low: Arrays
+    high: Arrays
+    codes: Array
+    causes: tuple[str, ...]
+
+    @property
+    def guaranteed(self) -> Array:
+        """Mask of the lanes whose result the table bounds."""
+        return np.asarray(self.codes == 0)
+
+    def cause(self, lane: int) -> str:
+        """Why a lane's result may be anything: operation, operand, place; empty where it is bounded."""
+        code = int(self.codes[lane])
+        return self.causes[code - 1] if code else ""
+
+    def histogram(self) -> dict[str, int]:
+        """Cause -> number of lanes, most frequent first."""
+        counts = np.bincount(self.codes, minlength=len(self.causes) + 1)[1:]
+        order = np.argsort(-counts, kind="stable")
+        return {self.causes[k]: int(counts[k]) for k in order if counts[k]}
+
+    def contains(self, value: Arrays) -> Array:
+        """Mask of the lanes whose result lies inside, all components; anything permits anything."""
+        inside = self.codes > 0
+        return np.asarray(inside | _inside(self.low, self.high, value))
+
+
+def _inside(low: Arrays, high: Arrays, value: Arrays) -> Array:
+    if isinstance(value, dict):
+        assert isinstance(low, dict)
+        assert isinstance(high, dict)
+        return np.asarray(np.logical_and.reduce([_inside(low[n], high[n], v) for n, v in value.items()]))
+    assert not isinstance(low, dict)
+    assert not isinstance(high, dict)
+    ok = np.asarray((value >= low) & (value <= high))
+    return np.asarray(ok.all(axis=-1) if ok.ndim == 2 else ok)
+
+
+def permitted(
+    library: Library, name: str, inputs: Mapping[str, Any], table: Table | str, *, follow_forks: bool = True
+) -> Permitted:
+    """What a table permits the function to return.
+
+    inputs        as for codegen.evaluate.evaluate, rounded to float32; a denormal may be read as 0
+    table         a table or its name
+    follow_forks  follow lanes whose comparisons their intervals do not decide along each way; without, the
+                  hull of both sides counts, which is wider and quicker
+    raises        UserError for unknown functions, parameters, tables or shapes
+    """
+    chosen = load_table(table) if isinstance(table, str) else table
+    return _Run(library, name, inputs, chosen).run(follow_forks)
+
+
+class _Run:
+    def __init__(self, library: Library, name: str, inputs: Mapping[str, Any], table: Table) -> None:
+        self.library = library
+        self.function = library.function(name)
+        types = {p.name: p.type for p in self.function.parameters}
+        self.inputs, self.count = convert_inputs(types, inputs, arithmetic("float32"), name)
+        self.table = table
+        self.book = CauseBook()
+        kinds = [scalar for _, scalar in leaves(self.function.returns)]
+        self.low = [np.empty(self.count, _dtype(kind)) for kind in kinds]
+        self.high = [np.empty(self.count, _dtype(kind)) for kind in kinds]
+        self.codes = np.zeros(self.count, np.int16)
+
+    def run(self, follow_forks: bool) -> Permitted:
+        with np.errstate(all="ignore"):
+            everyone = np.arange(self.count)
+            forks = np.full(self.count, -1, np.int32)
+            widths = np.zeros(self.count, np.int32)
+            for part in _chunks(everyone):
+                found = self.evaluate(part, None)
+                self.store(part, found, fresh=np.ones(len(part), np.bool_))
+                forks[part], widths[part] = found.first_fork, found.width
+            if follow_forks and (forks >= 0).any():
+                self.follow(np.flatnonzero(forks >= 0), forks, widths)
+        shape = self.function.returns
+        texts = tuple(str(cause) for cause in self.book.causes)
+        return Permitted(_build(shape, self.low), _build(shape, self.high), self.codes, texts)
+
+    def evaluate(self, lanes: Array, ways: Ways | None) -> _Found:
+        context = Context(self.table, self.book, len(lanes), ways)
+        context.function, context.line = self.function.name, self.function.place.line
+        context.operation = "input"
+        arguments = {
+            p.name: _value(context, p.type, self.inputs[p.name], lanes) for p in self.function.parameters
+        }
+        value = Frame(self.library, context, self.function, arguments).run()
+        singles = list(_singles(value))
+        low = [np.broadcast_to(_low(s), len(lanes)) for s in singles]
+        high = [np.broadcast_to(_high(s), len(lanes)) for s in singles]
+        codes = np.zeros(len(lanes), np.int16)
+        for s in singles:
+            if not isinstance(s, Truth) and s.cause is not None:
+                codes = np.where(codes > 0, codes, s.cause)
+        return _Found(low, high, codes, context.first_fork, context.width)
+
+    def store(self, lanes: Array, found: _Found, fresh: Array) -> None:
+        """Put results in: alone where fresh, else as the hull with what is there."""
+        for k, (low, high) in enumerate(zip(found.low, found.high, strict=True)):
+            self.low[k][lanes[fresh]] = low[fresh]
+            self.high[k][lanes[fresh]] = high[fresh]
+            np.minimum.at(self.low[k], lanes[~fresh], low[~fresh])
+            np.maximum.at(self.high[k], lanes[~fresh], high[~fresh])
+        self.codes[lanes[fresh]] = found.codes[fresh]
+        np.maximum.at(self.codes, lanes[~fresh], found.codes[~fresh])
+
+    def follow(self, lanes: Array, forks: Array, widths: Array) -> None:
+        """Split lanes at their first open fork until none is open, or DEPTH or MOST_PARTS is reached."""
+        before = [a[lanes].copy() for a in (*self.low, *self.high, self.codes)]
+        owner = lanes
+        path = Ways(np.full((len(lanes), DEPTH), -1, np.int32), np.full((len(lanes), DEPTH), -1, np.int32))
+        fork, width = forks[lanes], widths[lanes]
+        seen = np.zeros(self.count, np.bool_)
+        given_up = np.zeros(self.count, np.bool_)
+        for depth in range(DEPTH):
+            parts = np.bincount(owner, weights=width, minlength=self.count)
+            given_up |= parts > MOST_PARTS
+            kept = ~given_up[owner]
+            index = np.repeat(np.flatnonzero(kept), width[kept])
+            if not len(index):
+                break
+            way = np.concatenate([np.arange(w) for w in width[kept]])
+            path = Ways(path.forks[index], path.ways[index])
+            path.forks[:, depth], path.ways[:, depth] = fork[index], way
+            owner = owner[index]
+            open_fork, open_width = np.empty(len(owner), np.int32), np.empty(len(owner), np.int32)
+            for part in _chunks(np.arange(len(owner))):
+                found = self.evaluate(owner[part], Ways(path.forks[part], path.ways[part]))
+                open_fork[part], open_width[part] = found.first_fork, found.width
+                done = (found.first_fork < 0) | (depth == DEPTH - 1)
+                # The first finished way of a lane replaces its hull, later ones join it.
+                mine = owner[part][done]
+                first = np.zeros(len(mine), np.bool_)
+                first[np.unique(mine, return_index=True)[1]] = True
+                self.store(mine, found.select(done), first & ~seen[mine])
+                seen[mine] = True
+            rest = open_fork >= 0
+            owner, fork, width = owner[rest], open_fork[rest], open_width[rest]
+            path = Ways(path.forks[rest], path.ways[rest])
+        lost = given_up[lanes]
+        for a, old in zip((*self.low, *self.high, self.codes), before, strict=True):
+            a[lanes[lost]] = old[lost]
+
+
+@dataclass(frozen=True)
+class _Found:
+    low: list[Array]
+    high: list[Array]
+    codes: Array
+    first_fork: Array
+    width: Array
+
+    def select(self, mask: Array) -> _Found:
+        return _Found(
+            [a[mask] for a in self.low],
+            [a[mask] for a in self.high],
+            self.codes[mask],
+            self.first_fork[mask],
+            self.width[mask],
+        )
+
+
+def _chunks(lanes: Array) -> Iterator[Array]:
+    for start in range(0, len(lanes), CHUNK):
+        yield lanes[start : start + CHUNK]
+
+
+def _dtype(kind: Scalar) -> type[np.generic]:
+    return np.bool_ if kind == BOOL else np.float64 if kind == F32 else np.int64
+
+
+def _value(context: Context, type_: Type, given: Arrays, lanes: Array) -> Value:
+    if isinstance(type_, Struct):
+        assert isinstance(given, dict)
+        return {f.name: _value(context, f.type, given[f.name], lanes) for f in type_.fields}
+    assert not isinstance(given, dict)
+    if isinstance(type_, Vector):
+        return tuple(_single(context, type_.element, given[:, k][lanes]) for k in range(type_.size))
+    return _single(context, type_, given[lanes])
+
+
+def _single(context: Context, kind: Scalar, given: Array) -> Single:
+    if kind == F32:
+        return from_input(context, given)
+    if kind == BOOL:
+        return Truth(given.copy(), ~given)
+    whole = given.astype(np.int64)
+    return Whole(whole, whole, kind == I32)
+
+
+def _singles(value: Value) -> Iterator[Single]:
+    if isinstance(value, dict):
+        for part in value.values():
+            yield from _singles(part)
+    elif isinstance(value, tuple):
+        yield from value
+    else:
+        yield value
+
+
+def _low(s: Single) -> Array:
+    return ~s.false if isinstance(s, Truth) else s.low
+
+
+def _high(s: Single) -> Array:
+    return s.true if isinstance(s, Truth) else s.high
+
+
+def _build(type_: Type, rows: list[Array]) -> Arrays:
+    """Rows of scalars as a value of the type."""
+    remaining = iter(rows)
+
+    def build(t: Type) -> Arrays:
+        if isinstance(t, Struct):
+            return {f.name: build(f.type) for f in t.fields}
+        if isinstance(t, Vector):
+            return np.stack([next(remaining) for _ in range(t.size)], axis=-1)
+        return next(remaining)
+
+    return build(type_)

@@ -1,0 +1,152 @@
+"""Interval values: floats, whole numbers and truth values over arrays of lanes.
+
+Arrays have shape (N,), or (1,) for a value that all lanes share. A vector is a tuple of scalars and a struct
+a dict, so that each scalar keeps its identity: an operation on one and the same value twice (x * x, x - x) is
+seen as such.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from codegen.intervals.causes import Codes, first
+from codegen.intervals.numbers import Array
+
+
+@dataclass(eq=False, slots=True)
+class Range:
+    """Floats between two float32 numbers, held in float64.
+
+    low, high  ends, both included; the same array for values that are known exactly
+    cause      numbers of causes where the value may be anything, NaN included; its ends are then infinite
+    product    for a rounded product, bounds of the unrounded one: a multiply-add may use it
+    """
+
+    low: Array
+    high: Array
+    cause: Codes = None
+    product: tuple[Array, Array] | None = None
+
+    @property
+    def is_point(self) -> bool:
+        return self.low is self.high
+
+
+@dataclass(eq=False, slots=True)
+class Whole:
+    """Integers between two ends, int64; `is_signed` tells i32 from u32."""
+
+    low: Array
+    high: Array
+    is_signed: bool
+    cause: Codes = None
+
+    @property
+    def is_point(self) -> bool:
+        return self.low is self.high
+
+    @property
+    def limits(self) -> tuple[int, int]:
+        """The smallest and the largest integer of the type."""
+        return (-(2**31), 2**31 - 1) if self.is_signed else (0, 2**32 - 1)
+
+
+@dataclass(eq=False, slots=True)
+class Truth:
+    """Truth values: whether a lane may be true, and whether it may be false."""
+
+    true: Array
+    false: Array
+
+    @property
+    def undecided(self) -> Array:
+        return np.asarray(self.true & self.false)
+
+
+Single = Range | Whole | Truth
+Value = Single | tuple[Single, ...] | dict[str, "Value"]
+
+N = TypeVar("N", Range, Whole)
+
+
+def constant(value: float | int | bool, is_signed: bool) -> Single:
+    """A literal, shared by all lanes."""
+    if isinstance(value, bool):
+        return Truth(np.array([value]), np.array([not value]))
+    if isinstance(value, int):
+        whole = np.array([value], np.int64)
+        return Whole(whole, whole, is_signed)
+    a = np.array([value], np.float64)
+    return Range(a, a)
+
+
+def always(value: bool) -> Truth:
+    """A truth value that all lanes share."""
+    return Truth(np.array([value]), np.array([not value]))
+
+
+def all_of(a: Truth, b: Truth) -> Truth:
+    """Conjunction."""
+    return Truth(a.true & b.true, a.false | b.false)
+
+
+def any_of(a: Truth, b: Truth) -> Truth:
+    """Disjunction."""
+    return Truth(a.true | b.true, a.false & b.false)
+
+
+def opposite(a: Truth) -> Truth:
+    """Negation."""
+    return Truth(a.false, a.true)
+
+
+def choose(condition: Truth, if_true: Value, if_false: Value) -> Value:
+    """The chosen value where the condition is decided, and the hull of both where it is not."""
+    if if_true is if_false or not condition.false.any():
+        return if_true
+    if not condition.true.any():
+        return if_false
+    if isinstance(if_true, dict):
+        assert isinstance(if_false, dict)
+        return {name: choose(condition, v, if_false[name]) for name, v in if_true.items()}
+    if isinstance(if_true, tuple):
+        assert isinstance(if_false, tuple)
+        return tuple(_choose(condition, a, b) for a, b in zip(if_true, if_false, strict=True))
+    assert isinstance(if_false, Range | Whole | Truth)
+    return _choose(condition, if_true, if_false)
+
+
+def _choose(condition: Truth, a: Single, b: Single) -> Single:
+    t, f = condition.true, condition.false
+    if a is b:
+        return a
+    if isinstance(a, Truth):
+        assert isinstance(b, Truth)
+        return Truth((t & a.true) | (f & b.true), (t & a.false) | (f & b.false))
+    if isinstance(a, Range):
+        assert isinstance(b, Range)
+        low, high = _hull(t, f, a, b)
+        return Range(low, high, _cause(t, f, a.cause, b.cause))
+    assert isinstance(b, Whole)
+    low, high = _hull(t, f, a, b)
+    return Whole(low, high, a.is_signed, _cause(t, f, a.cause, b.cause))
+
+
+def _hull(t: Array, f: Array, a: N, b: N) -> tuple[Array, Array]:
+    both = t & f
+    low = np.where(t, a.low, b.low)
+    if not both.any():
+        return (low, low) if a.is_point and b.is_point else (low, np.where(t, a.high, b.high))
+    return (
+        np.where(both, np.minimum(a.low, b.low), low),
+        np.where(both, np.maximum(a.high, b.high), np.where(t, a.high, b.high)),
+    )
+
+
+def _cause(t: Array, f: Array, a: Codes, b: Codes) -> Codes:
+    kept_a = None if a is None else np.where(t, a, np.int16(0))
+    kept_b = None if b is None else np.where(f, b, np.int16(0))
+    return first(kept_a, kept_b)
