@@ -1,35 +1,33 @@
 """Arithmetic, comparisons, logic, and the built-ins that stay close to them. Read this file as a table."""
 
 from codegen.ir.types import BOOL, I32
-from codegen.ops.accuracy import EXACT, ROUNDED, Inherited, Ulp, promise
 from codegen.ops.op import Op
 from codegen.ops.rules import FLOATS, INTS, UINTS, arithmetic, comparison, division, same, scaling
 
 SEE = "WGSL 15.7.4; Vulkan: Precision of Individual Operations; GLSL 4.7.1; OpenCL C 7.4"
 
 OPERATORS = (
-    Op("+", arithmetic(), lambda m, a, b: a + b, ROUNDED, "add", ((0.1, 0.2),), SEE),
-    Op("-", arithmetic(), lambda m, a, b: a - b, ROUNDED, "add", ((0.3, 0.1),), SEE),
-    Op("*", (*arithmetic(), *scaling()), lambda m, a, b: a * b, ROUNDED, "multiply", ((0.1, 3.0),), SEE),
+    Op("+", arithmetic(), lambda m, a, b: a + b, "add", ((0.1, 0.2),), SEE),
+    Op("-", arithmetic(), lambda m, a, b: a - b, "add", ((0.3, 0.1),), SEE),
+    Op("*", (*arithmetic(), *scaling()), lambda m, a, b: a * b, "multiply", ((0.1, 3.0),), SEE),
     Op(
         "/",
         division(),
         lambda m, a, b: m.divide(a, b),
-        promise(Ulp(2.5), Ulp(2.5)),
         "divide",
         ((1.0, 3.0),),
         SEE,
     ),
-    Op("negate", same((*FLOATS, I32), 1), lambda m, a: -a, EXACT, "free", ((1.5,),), SEE),
-    Op("<", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a < b, EXACT, "add", ((1.0, 2.0),), SEE),
-    Op("<=", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a <= b, EXACT, "add", ((1.0, 1.0),), SEE),
-    Op(">", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a > b, EXACT, "add", ((1.0, 2.0),), SEE),
-    Op(">=", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a >= b, EXACT, "add", ((1.0, 1.0),), SEE),
-    Op("==", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a == b, EXACT, "add", ((1.0, 1.0),), SEE),
-    Op("!=", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a != b, EXACT, "add", ((1.0, 1.0),), SEE),
-    Op("and", same((BOOL,), 2), lambda m, a, b: m.logical_and(a, b), EXACT, "free", ((True, False),), SEE),
-    Op("or", same((BOOL,), 2), lambda m, a, b: m.logical_or(a, b), EXACT, "free", ((True, False),), SEE),
-    Op("not", same((BOOL,), 1), lambda m, a: m.logical_not(a), EXACT, "free", ((True,),), SEE),
+    Op("negate", same((*FLOATS, I32), 1), lambda m, a: -a, "free", ((1.5,),), SEE),
+    Op("<", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a < b, "add", ((1.0, 2.0),), SEE),
+    Op("<=", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a <= b, "add", ((1.0, 1.0),), SEE),
+    Op(">", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a > b, "add", ((1.0, 2.0),), SEE),
+    Op(">=", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a >= b, "add", ((1.0, 1.0),), SEE),
+    Op("==", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a == b, "add", ((1.0, 1.0),), SEE),
+    Op("!=", comparison((*FLOATS[:1], *INTS)), lambda m, a, b: a != b, "add", ((1.0, 1.0),), SEE),
+    Op("and", same((BOOL,), 2), lambda m, a, b: m.logical_and(a, b), "free", ((True, False),), SEE),
+    Op("or", same((BOOL,), 2), lambda m, a, b: m.logical_or(a, b), "free", ((True, False),), SEE),
+    Op("not", same((BOOL,), 1), lambda m, a: m.logical_not(a), "free", ((True,),), SEE),
 )
 
 BUILTINS = (
@@ -37,7 +35,6 @@ BUILTINS = (
         "abs",
         same(FLOATS, 1),
         lambda m, x: m.abs(x),
-        EXACT,
         "free",
         ((-1.5,),),
         SEE,
@@ -49,7 +46,6 @@ BUILTINS = (
         "min",
         same((*FLOATS, *INTS, *UINTS[1:]), 2),
         lambda m, x, y: m.minimum(x, y),
-        EXACT,
         "add",
         ((1.0, 2.0),),
         SEE,
@@ -60,7 +56,6 @@ BUILTINS = (
         "max",
         same((*FLOATS, *INTS, *UINTS[1:]), 2),
         lambda m, x, y: m.maximum(x, y),
-        EXACT,
         "add",
         ((1.0, 2.0),),
         SEE,
@@ -71,7 +66,6 @@ BUILTINS = (
         "clamp",
         same((*FLOATS, *INTS), 3),
         lambda m, x, low, high: m.minimum(m.maximum(x, low), high),
-        EXACT,
         "add",
         ((2.0, 0.0, 1.0),),
         SEE,
@@ -82,7 +76,6 @@ BUILTINS = (
         "floor",
         same(FLOATS, 1),
         lambda m, x: m.floor(x),
-        EXACT,
         "add",
         ((1.5,), (-0.25,)),
         SEE,
@@ -93,7 +86,6 @@ BUILTINS = (
         "sqrt",
         same(FLOATS, 1),
         lambda m, x: m.sqrt(x),
-        promise(Inherited("1 / inverse_sqrt(x)"), Ulp(3)),
         "root",
         ((2.0,), (0.0,)),
         SEE,
@@ -104,7 +96,6 @@ BUILTINS = (
         "inverse_sqrt",
         same(FLOATS, 1),
         lambda m, x: m.divide(1, m.sqrt(x)),
-        promise(Ulp(2), Ulp(2)),
         "root",
         ((2.0,),),
         SEE,

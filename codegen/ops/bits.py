@@ -1,21 +1,20 @@
 """Integers and bit patterns; unsigned arithmetic wraps modulo 2^32. Read this file as a table."""
 
 from codegen.ir.types import F32, U32
-from codegen.ops.accuracy import EXACT
 from codegen.ops.op import Op
 from codegen.ops.rules import UINTS, one, same
 
 SEE = "WGSL 8.9; GLSL 5.9; OpenCL C 6.3: exact"
 
 OPERATORS = (
-    Op("//", same((U32,), 2), lambda m, a, b: a // b, EXACT, "divide", ((7, 2),), SEE),
-    Op("%", same((U32,), 2), lambda m, a, b: a % b, EXACT, "divide", ((7, 2),), SEE),
-    Op("<<", same((U32,), 2), lambda m, a, b: a << b, EXACT, "add", ((1, 4),), SEE),
-    Op(">>", same((U32,), 2), lambda m, a, b: a >> b, EXACT, "add", ((256, 4),), SEE),
-    Op("&", same(UINTS, 2), lambda m, a, b: a & b, EXACT, "add", ((6, 3),), SEE),
-    Op("|", same(UINTS, 2), lambda m, a, b: a | b, EXACT, "add", ((6, 3),), SEE),
-    Op("^", same(UINTS, 2), lambda m, a, b: a ^ b, EXACT, "add", ((6, 3),), SEE),
-    Op("~", same(UINTS, 1), lambda m, a: ~a, EXACT, "add", ((6,),), SEE),
+    Op("//", same((U32,), 2), lambda m, a, b: a // b, "divide", ((7, 2),), SEE),
+    Op("%", same((U32,), 2), lambda m, a, b: a % b, "divide", ((7, 2),), SEE),
+    Op("<<", same((U32,), 2), lambda m, a, b: a << b, "add", ((1, 4),), SEE),
+    Op(">>", same((U32,), 2), lambda m, a, b: a >> b, "add", ((256, 4),), SEE),
+    Op("&", same(UINTS, 2), lambda m, a, b: a & b, "add", ((6, 3),), SEE),
+    Op("|", same(UINTS, 2), lambda m, a, b: a | b, "add", ((6, 3),), SEE),
+    Op("^", same(UINTS, 2), lambda m, a, b: a ^ b, "add", ((6, 3),), SEE),
+    Op("~", same(UINTS, 1), lambda m, a: ~a, "add", ((6,),), SEE),
 )
 
 BUILTINS = (
@@ -23,7 +22,6 @@ BUILTINS = (
         "float_to_bits",
         one((F32,), U32),
         lambda m, x: m.float_to_bits(x),
-        EXACT,
         "free",
         ((1.5,),),
         SEE,
@@ -35,7 +33,6 @@ BUILTINS = (
         "bits_to_float",
         one((U32,), F32),
         lambda m, x: m.bits_to_float(x),
-        EXACT,
         "free",
         ((0x3F800000,),),
         SEE,

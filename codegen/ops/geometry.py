@@ -3,7 +3,6 @@
 from typing import Any
 
 from codegen.ir.types import VEC3
-from codegen.ops.accuracy import Inherited, ScaledAbsolute, Ulp, promise
 from codegen.ops.op import Op
 from codegen.ops.rules import FLOAT_VECTORS, one, reduction, same
 
@@ -29,7 +28,6 @@ BUILTINS = (
         "dot",
         reduction(2),
         _dot,
-        promise(Inherited("sum of products in any order"), ScaledAbsolute(5)),
         "multiply",
         (((0.0, 0.6, 0.8), (1.0, 0.0, 0.0)),),
         SEE,
@@ -40,7 +38,6 @@ BUILTINS = (
         "cross",
         one((VEC3, VEC3), VEC3),
         _cross,
-        promise(Inherited("x[i] y[j] - x[j] y[i]"), ScaledAbsolute(3)),
         "multiply",
         (((0.0, 0.6, 0.8), (1.0, 0.0, 0.0)),),
         SEE,
@@ -51,7 +48,6 @@ BUILTINS = (
         "length",
         reduction(1),
         lambda m, x: m.sqrt(_dot(m, x, x)),
-        promise(Inherited("sqrt(dot(x, x))"), Ulp(4.25)),
         "root",
         (((0.0, 0.6, 0.8),),),
         SEE,
@@ -62,7 +58,6 @@ BUILTINS = (
         "normalize",
         same(FLOAT_VECTORS, 1),
         lambda m, x: m.divide(x, m.sqrt(_dot(m, x, x))[..., None]),
-        promise(Inherited("x / length(x)"), Ulp(5)),
         "root",
         (((0.0, 3.0, 4.0),),),
         SEE,

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from codegen.ir.types import Type
-from codegen.ops.accuracy import Promise
 from codegen.ops.rules import Rule
 
 Meaning = Callable[..., Any]
@@ -23,10 +22,9 @@ class Op:
 
     rule      overloads: argument types -> result type
     meaning   the value over the numbers, in terms of numpy names
-    accuracy  what each specification promises (codegen.ops.accuracy)
     cost      one of COSTS
     probe     legal sample arguments, one tuple per sample (vectors as tuples)
-    see       where the promise is written
+    see       where the specifications speak of it; what they promise is in codegen/intervals/tables
     summary   one line for editors (built-ins)
     names     parameter names for editors (built-ins)
     spell     spelling per target where it differs from `name`
@@ -35,7 +33,6 @@ class Op:
     name: str
     rule: Rule
     meaning: Meaning
-    accuracy: Promise
     cost: str
     probe: tuple[tuple[Any, ...], ...]
     see: str

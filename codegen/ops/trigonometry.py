@@ -1,8 +1,5 @@
 """Trigonometry, in radians. OpenGL promises nothing here. Read this file as a table."""
 
-from math import pi
-
-from codegen.ops.accuracy import Absolute, Ulp, Unstated, promise
 from codegen.ops.op import Op
 from codegen.ops.rules import FLOATS, same
 
@@ -13,7 +10,6 @@ BUILTINS = (
         "sin",
         same(FLOATS, 1),
         lambda m, x: m.sin(x),
-        promise(Absolute(2.0**-11, (-pi, pi)), Ulp(4), glsl=Unstated()),
         "trigonometric",
         ((0.5,), (-3.0,)),
         SEE,
@@ -24,7 +20,6 @@ BUILTINS = (
         "cos",
         same(FLOATS, 1),
         lambda m, x: m.cos(x),
-        promise(Absolute(2.0**-11, (-pi, pi)), Ulp(4), glsl=Unstated()),
         "trigonometric",
         ((0.5,), (-3.0,)),
         SEE,
@@ -35,7 +30,6 @@ BUILTINS = (
         "atan2",
         same(FLOATS, 2),
         lambda m, y, x: m.arctan2(y, x),
-        promise(Ulp(4096), Ulp(6), glsl=Unstated()),
         "trigonometric",
         ((0.0, -1.0), (1.0, 2.0)),
         SEE,
