@@ -68,9 +68,10 @@ class Draw:
 
 
 def draws(function: Function, uniform: int = UNIFORM_COUNT, family: int = FAMILY_COUNT) -> Iterable[Draw]:
-    """The random points and every family of hard cases that fits the function's parameters."""
+    """Random points, the worst inputs that searches found, every family that fits the parameters."""
     for name, count in [
         ("uniform", uniform),
+        *([(cases.WORST, 0)] if cases.has_worst(function) else []),
         *((f, family) for f in cases.families_for(function.parameters)),
     ]:
         yield draw(function, name, count, SEED)
@@ -78,7 +79,7 @@ def draws(function: Function, uniform: int = UNIFORM_COUNT, family: int = FAMILY
 
 def draw(function: Function, family: str, count: int, seed: int) -> Draw:
     """One set of inputs, the same for the same arguments."""
-    inputs = cases.draw(function, family, count, seed)
+    inputs = cases.worst(function) if family == cases.WORST else cases.draw(function, family, count, seed)
     return (
         Draw(family, _length(inputs), seed, inputs)
         if family != "uniform"
@@ -110,7 +111,13 @@ def check_function(
     result.bounds = [BoundResult(b.describe(), b.bound) for b in bounds]
     for d in draws_of or draws(function):
         _check_draw(
-            result, bounds, errors, d, on.run(library, name, d.inputs), _expected(reference, d), function
+            result,
+            bounds,
+            errors,
+            d,
+            on.run(library, name, d.inputs),
+            expected_of(reference, d.inputs),
+            function,
         )
     for found, parts in zip(result.bounds, errors, strict=True):
         _summarise(found, parts)
@@ -119,7 +126,7 @@ def check_function(
 
 
 def find_reference(library: Library, function: Function) -> Callable[..., Any] | None:
-    """The independent reference; for a function that no formula fixes, the evaluator, so that all targets agree.
+    """The independent reference; where no formula fixes a function, the evaluator: all targets agree.
 
     What such a function must do is tested by its properties.
     """
@@ -132,8 +139,9 @@ def find_reference(library: Library, function: Function) -> Callable[..., Any] |
         return None
 
 
-def _expected(reference: Callable[..., Any], d: Draw) -> Any:
-    return reference(*(_widen(value) for value in d.inputs.values()))
+def expected_of(reference: Callable[..., Any], inputs: Mapping[str, Any]) -> Any:
+    """The reference's values: it gets the exact float32 inputs, widened."""
+    return reference(*(_widen(value) for value in inputs.values()))
 
 
 def _widen(value: Any) -> Any:
