@@ -6,6 +6,7 @@ one.
 """
 
 import numpy as np
+import numpy.typing as npt
 
 from conformance.reference.exact import Array, mirror, real, stack, unit
 from conformance.reference.sampling import hemisphere_cosine
@@ -17,13 +18,19 @@ NO_HALF = 1e-12
 
 def upper_half(l: Array, v: Array) -> tuple[Array, Array]:
     """The half vector turned to the upper side, and |v.h|; for l = -v the x axis, and NO_HALF."""
-    l, v = unit(l), unit(v)
-    g = l + v
+    # in extended precision, because the directions may be nearly opposite
+    g = np.asarray(extended_unit(l) + extended_unit(v), dtype=np.float64)
     square = np.sum(g * g, axis=-1)
     h = np.where((square > 0.0)[..., None], unit(g), np.array([1.0, 0.0, 0.0]))
     h = np.where(h[..., 2:] < 0.0, -h, h)
     # v.(l + v) = 1 + l.v = |l + v|^2 / 2, so v.h = |l + v| / 2
     return h, np.maximum(np.sqrt(square) / 2.0, NO_HALF)
+
+
+def extended_unit(w: Array) -> npt.NDArray[np.longdouble]:
+    """Direction of a float32 vector with the digits of the platform's long double."""
+    wide = np.asarray(w, dtype=np.longdouble)
+    return np.asarray(wide / np.sqrt(np.sum(wide * wide, axis=-1, keepdims=True)), dtype=np.longdouble)
 
 
 def height_power(h: Array, exponent: Array) -> Array:
