@@ -124,7 +124,7 @@ def blocked(xi: Any, phi: float, spread: float) -> Any:
     y, z = np.sin(xi), np.cos(xi)
     dy, dz = np.sin(phi), np.cos(phi)
     hidden = np.cos(xi - phi) <= 0.0
-    for k in [*range(-40, 0), *range(1, 41)]:
+    for k in [*range(-8, 0), *range(1, 9)]:
         a = y - k * pitch
         b = a * dy + z * dz
         root = b * b - (a * a + z * z - 1.0)
@@ -139,7 +139,7 @@ def blocked(xi: Any, phi: float, spread: float) -> Any:
 def test_visible_arcs_agree_with_rays() -> None:
     random = np.random.Generator(np.random.Philox(SEED))
     for spread in (np.pi / 2.0, 1.2, 0.6, 0.1):
-        for phi in random.uniform(-1.55, 1.55, 60):
+        for phi in random.uniform(-1.55, 1.55, 40):
             xi = random.uniform(-spread, spread, 100)
             gamma, side = np.array([np.pi / 2.0 - abs(phi)]), np.array([np.copysign(1.0, phi)])
             a, b = lobes_fibre.visible_arc(gamma, side, np.array([spread]))
@@ -154,7 +154,7 @@ def test_satin_albedos() -> None:
     for spread, expected in check["diffuse_albedo"]:
         evaluator = lobe("poulin_fournier", [spread, 0.0, 20.0])
         chart = chart_for("poulin_fournier", dict(evaluator.parameters), v)
-        assert abs(albedo_by_quadrature(evaluator, v, chart) - expected) <= check["tolerance"]
+        assert abs(albedo_by_quadrature(evaluator, v, chart, cells=30) - expected) <= check["tolerance"]
     shiny = lobe("poulin_fournier", [0.6, 1.0, 20.0])
     chart = chart_for("poulin_fournier", dict(shiny.parameters), v)
     assert (
