@@ -1,0 +1,84 @@
+"""Executors on this machine: in this process, or in processes of their own."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections import deque
+from collections.abc import Generator, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from typing import Protocol
+
+from conformance.executor.jobs import Job, Result, available, perform
+
+ATTEMPTS = 3
+"""How often a job is tried whose worker dies; then it is reported as failed."""
+QUEUED_PER_WORKER = 2
+"""Jobs handed out ahead, so that no worker waits; all of them are tried again when a worker dies."""
+
+
+class Executor(Protocol):
+    """Something that performs jobs."""
+
+    def run(self, jobs: Iterable[Job]) -> Iterator[Result]:
+        """One result per job, in any order. Jobs may be done twice, results are given once."""
+        ...
+
+
+class Here:
+    """This process, one job after the other."""
+
+    def run(self, jobs: Iterable[Job]) -> Iterator[Result]:
+        for job in jobs:
+            missing = available(job.target)
+            yield Result(job, {}, missing) if missing else perform(job)
+
+
+class Processes:
+    """A pool of processes; each opens its own devices. A process that dies loses nothing."""
+
+    def __init__(self, workers: int = 2) -> None:
+        self.workers = workers
+
+    def run(self, jobs: Iterable[Job]) -> Iterator[Result]:
+        waiting: deque[Job] = deque()
+        for job in jobs:
+            missing = available(job.target)
+            if missing:
+                yield Result(job, {}, missing)
+            else:
+                waiting.append(job)
+        while waiting:
+            died = yield from self._pool(waiting)
+            # Any of them may have killed the process: alone, a fatal job takes no other with it.
+            for job in died:
+                yield from self._alone(job)
+
+    def _alone(self, job: Job) -> Iterator[Result]:
+        for _ in range(ATTEMPTS - 1):
+            died = yield from self._pool(deque([job]))
+            if not died:
+                return
+        yield Result(job, {}, f"the worker died in each of {ATTEMPTS} attempts")
+
+    def _pool(self, waiting: deque[Job]) -> Generator[Result, None, list[Job]]:
+        """Run what waits in one pool, until a process dies; returns the jobs that were under way then."""
+        spawn = multiprocessing.get_context("spawn")  # drivers do not survive a fork
+        under_way: dict[Future[Result], Job] = {}
+        died: list[Job] = []
+        with ProcessPoolExecutor(min(self.workers, len(waiting)), mp_context=spawn) as pool:
+            while under_way or (waiting and not died):
+                while waiting and not died and len(under_way) < self.workers * QUEUED_PER_WORKER:
+                    try:
+                        future = pool.submit(perform, waiting[0])
+                    except BrokenProcessPool:
+                        break  # what is under way will say so
+                    under_way[future] = waiting.popleft()
+                finished, _ = wait(under_way, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    job = under_way.pop(future)
+                    try:
+                        yield future.result()
+                    except BrokenProcessPool:
+                        died.append(job)
+        return died

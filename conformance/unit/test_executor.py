@@ -1,0 +1,119 @@
+"""Executors: the same results everywhere; a worker that dies loses nothing; no work without the driver."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conformance.executor import Here, Job, Processes, Result, open_executor
+
+ECHO = "conformance.executor.jobs:echo"
+
+
+def jobs(count: int, target: str = "numpy") -> list[Job]:
+    return [Job(ECHO, "f", target, 10 * k, 10 * k + 10, seed=k) for k in range(count)]
+
+
+def told(results: Iterator[Result]) -> dict[str, tuple[dict[str, Any], str]]:
+    found = [(r.job.identity, (r.data, r.error)) for r in results]
+    assert len(found) == len(dict(found)), "a job has two results"
+    return dict(found)
+
+
+def test_one_process_answers_every_job() -> None:
+    answers = told(Here().run(jobs(4)))
+    assert [data["sum"] for data, _ in answers.values()] == [45, 145, 245, 345]
+
+
+def test_processes_agree_with_one_process() -> None:
+    assert told(Processes(2).run(jobs(12))) == told(Here().run(jobs(12)))
+
+
+def test_what_a_task_raises_is_its_result() -> None:
+    (result,) = Here().run([Job(ECHO, "f", "numpy", options=(("raise", "no"),))])
+    assert not result.done
+    assert result.error == "ValueError: no"
+
+
+def test_a_target_without_driver_is_told_not_tried() -> None:
+    for executor in (Here(), Processes(2)):
+        answers = told(executor.run([*jobs(2), *jobs(1, "metal")]))
+        assert sorted(error for _, error in answers.values()) == ["", "", "there is no target metal"]
+
+
+def test_a_process_that_dies_loses_nothing(tmp_path: Path) -> None:
+    marker = tmp_path / "fatal"
+    marker.touch()
+    fatal = Job(ECHO, "f", "numpy", 0, 5, options=(("fatal", str(marker)),))
+    answers = told(Processes(2).run([fatal, *jobs(5)]))
+    assert not marker.exists(), "the process was never killed"
+    assert len(answers) == 6
+    assert answers[fatal.identity] == ({"sum": 10, "target": "numpy"}, "")
+    assert all(not error for _, error in answers.values())
+
+
+def test_options_choose_the_executor() -> None:
+    assert isinstance(open_executor(1, None), Here)
+    chosen = open_executor(3, None)
+    assert isinstance(chosen, Processes)
+    assert chosen.workers == 3
+
+
+@pytest.fixture(scope="module")
+def local_cluster() -> Iterator[Any]:
+    """Two workers, each a process of its own; only the first may run OpenCL."""
+    distributed = pytest.importorskip("distributed", reason="distributed is not installed: vair[cluster]")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0
+    ) as cluster:
+        yield cluster
+
+
+@pytest.fixture
+def on_cluster(local_cluster: Any) -> Iterator[Any]:
+    from conformance.executor.cluster import Cluster, DriverResources
+
+    only = {"0": ("numpy", "opencl"), "1": ("numpy",)}
+    executor = Cluster(local_cluster.scheduler_address, DriverResources(only))
+    yield executor
+    executor.close()
+
+
+def test_cluster_agrees_with_one_process(on_cluster: Any) -> None:
+    assert told(on_cluster.run(jobs(30))) == told(Here().run(jobs(30)))
+
+
+def test_a_worker_without_the_driver_is_never_given_its_work(on_cluster: Any) -> None:
+    task = "conformance.unit.cluster_tasks:who"
+    declared = on_cluster.resources()
+    able = [name for name, names in declared.items() if any("opencl" in n for n in names)]
+    if not able:
+        pytest.skip("opencl: no worker of this machine has the driver")
+    assert able == ["0"]
+    asked = [Job(task, "f", "opencl", seed=k) for k in range(12)]
+    workers = {result.data["worker"] for result in on_cluster.run(asked)}
+    assert workers == {"0"}
+    both = {r.data["worker"] for r in on_cluster.run([Job(task, "f", "numpy", seed=k) for k in range(12)])}
+    assert both == {"0", "1"}
+    (missing,) = on_cluster.run([Job(task, "f", "glsl")])
+    assert missing.error == "none of 2 workers has the driver of glsl"
+
+
+def test_a_worker_killed_in_mid_run_loses_nothing(
+    on_cluster: Any, local_cluster: Any, tmp_path: Path
+) -> None:
+    task = "conformance.unit.cluster_tasks:slow"
+    asked = [Job(task, "f", "numpy", seed=k) for k in range(12)]
+    running = on_cluster.run(asked)
+    first = next(running)
+    os.kill(first.data["pid"], signal.SIGKILL)
+    rest = list(running)
+    answers = {r.job.seed: r.data["square"] for r in [first, *rest]}
+    assert answers == {k: k * k for k in range(12)}
+    assert len({r.data["pid"] for r in [first, *rest]}) >= 2
+    assert all(r.done for r in rest)
