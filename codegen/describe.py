@@ -64,10 +64,10 @@ def operations(library: Library, f: Function) -> dict[str, int]:
 
     def expression(root: ir.Expr, times: int) -> None:
         for e in ir.walk(root):
-            if isinstance(e, ir.Unary | ir.Binary):
-                counts[OPERATORS[e.op].cost] += times * width(e)
-            elif isinstance(e, ir.Builtin):
-                counts[BUILTINS[e.op].cost] += times * width(e)
+            if isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
+                op = BUILTINS[e.op] if isinstance(e, ir.Builtin) else OPERATORS[e.op]
+                for cost, n in op.operations(width(e)).items():
+                    counts[cost] += times * n
             elif isinstance(e, ir.Call):
                 for cost, n in operations(library, library.function(e.function)).items():
                     counts[cost] += times * n

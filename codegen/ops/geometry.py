@@ -33,6 +33,7 @@ BUILTINS = (
         SEE,
         summary="Inner product.",
         names=("a", "b"),
+        work=lambda n: {"multiply": n, "add": n - 1},
     ),
     Op(
         "cross",
@@ -43,6 +44,7 @@ BUILTINS = (
         SEE,
         summary="Outer product; right-handed.",
         names=("a", "b"),
+        work=lambda n: {"multiply": 6, "add": 3},
     ),
     Op(
         "length",
@@ -53,6 +55,7 @@ BUILTINS = (
         SEE,
         summary="Euclidean length; squares overflow above 1e19 and vanish below 1e-19.",
         names=("x",),
+        work=lambda n: {"multiply": n, "add": n - 1, "root": 1},
     ),
     Op(
         "normalize",
@@ -63,5 +66,6 @@ BUILTINS = (
         SEE,
         summary="x / length(x); not for vectors that may be zero, see safe_normalize.",
         names=("x",),
+        work=lambda n: {"multiply": n, "add": n - 1, "root": 1, "divide": n},
     ),
 )

@@ -28,6 +28,7 @@ class Op:
     summary   one line for editors (built-ins)
     names     parameter names for editors (built-ins)
     spell     spelling per target where it differs from `name`
+    work      scalar operations by cost class for vectors of n components, where that is not n times `cost`
     """
 
     name: str
@@ -39,6 +40,11 @@ class Op:
     summary: str = ""
     names: tuple[str, ...] = ()
     spell: Mapping[str, str] = field(default_factory=dict)
+    work: Callable[[int], Mapping[str, int]] | None = None
+
+    def operations(self, size: int) -> Mapping[str, int]:
+        """Scalar operations by cost class for operands of `size` components."""
+        return {self.cost: size} if self.work is None else self.work(size)
 
     def result(self, arguments: tuple[Type, ...]) -> Type | None:
         """The result type for these argument types; None where no overload fits."""
