@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from codegen.backends import dialect
+from codegen.emit.dialect import with_precise
 from codegen.emit.module import DEFAULT_PREFIX, emit
 from codegen.files import write_text
 from codegen.library import load_library
@@ -19,12 +20,21 @@ from codegen.library import load_library
     "--function", "functions", multiple=True, help="Emit this function with what it needs; repeatable."
 )
 @click.option("--prefix", default=DEFAULT_PREFIX, show_default=True, help="Put before every name.")
+@click.option(
+    "--precise", is_flag=True, help="GLSL: qualify every float local, so that nothing is reordered."
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write this file instead of printing.")
 def command(
-    target: str, dialect_name: str | None, functions: tuple[str, ...], prefix: str, output: Path | None
+    target: str,
+    dialect_name: str | None,
+    functions: tuple[str, ...],
+    prefix: str,
+    precise: bool,
+    output: Path | None,
 ) -> None:
     """Emit one self-contained include; all functions if none is named."""
-    text = emit(load_library(), dialect(target, dialect_name), list(functions) or None, prefix)
+    chosen = dialect(target, dialect_name)
+    text = emit(load_library(), with_precise(chosen) if precise else chosen, list(functions) or None, prefix)
     if output is None:
         click.echo(text, nl=False)
     else:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
+
+from codegen.errors import UserError
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,9 @@ class Dialect:
     conversions  "call": float(x), "cast": (float)x
     conditional  "ternary": c ? a : b, "select": select(b, a, c)
     guard        whether the text carries an include guard
+    precise      qualifier of a variable whose computation may be neither reordered nor fused ("" where the
+                 dialect has none)
+    local        qualifier put before every local that holds floats ("" for none)
     line_map     how a source line is stated, with {line} and {file} ("" where the target has no directive)
     """
 
@@ -42,4 +47,13 @@ class Dialect:
     conversions: Literal["call", "cast"] = "call"
     conditional: Literal["ternary", "select"] = "ternary"
     guard: bool = True
+    precise: str = ""
+    local: str = ""
     line_map: str = field(default="")
+
+
+def with_precise(dialect: Dialect) -> Dialect:
+    """The dialect with its `precise` before every local; raises UserError where it has none."""
+    if not dialect.precise:
+        raise UserError(f"{dialect.title} has no precise qualifier; GLSL has one from 4.00 on")
+    return replace(dialect, local=dialect.precise)

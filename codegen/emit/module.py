@@ -44,7 +44,7 @@ def emit_selection(library: Library, dialect: Dialect, selection: Selection, pre
     printer = StmtPrinter(dialect)
     public_names = library.resolver.names
     rename = comment.renamer(public_names, prefix)
-    unit = run_passes(selection, prefix)
+    unit = run_passes(selection, prefix, named_results=bool(dialect.local))
     blocks: list[list[str]] = []
     for original, renamed in zip(selection.structs, unit.structs, strict=True):
         blocks.append([*comment.struct_comment(original, rename), *printer.struct(renamed.type)])
@@ -71,6 +71,8 @@ def _guard(dialect: Dialect, prefix: str, names: Sequence[str] | None) -> str:
 
 def _header(dialect: Dialect, selection: Selection, names: Sequence[str] | None, prefix: str) -> list[str]:
     command = f"vair emit --target {dialect.target} --dialect {dialect.name}"
+    if dialect.local:
+        command += " --precise"
     if prefix != DEFAULT_PREFIX:
         command += f" --prefix {prefix}"
     command += "".join(f" --function {name}" for name in names or ())

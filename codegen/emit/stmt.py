@@ -6,7 +6,7 @@ from codegen.emit import wrap
 from codegen.emit.dialect import Dialect
 from codegen.emit.expr import ExprPrinter
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, Struct, Type
+from codegen.ir.types import BOOL, F32, Struct, Type, leaves
 
 _STEP = "    "
 
@@ -36,7 +36,8 @@ class StmtPrinter:
             if not s.mutable:
                 return f"let {s.name} = {value};"
             return f"var {s.name}: {self.type_name(s.value.type)} = {value};"
-        return f"{self.type_name(s.value.type)} {s.name} = {value};"
+        qualifier = f"{self.dialect.local} " if self.dialect.local and holds_floats(s.value.type) else ""
+        return f"{qualifier}{self.type_name(s.value.type)} {s.name} = {value};"
 
     def block(self, body: tuple[ir.Stmt, ...], indent: str) -> list[str]:
         """The lines of a block."""
@@ -95,3 +96,8 @@ class StmtPrinter:
         if self.dialect.structs == "compound":
             return [f"typedef struct {s.name} {{", *fields, f"}} {s.name};"]
         return [f"struct {s.name} {{", *fields, "};"]
+
+
+def holds_floats(type_: Type) -> bool:
+    """Whether any scalar of the type is a float."""
+    return any(scalar == F32 for _, scalar in leaves(type_))

@@ -2,10 +2,16 @@
 
 from codegen.ir.unit import Unit
 from codegen.library import Selection
+from codegen.passes.precise import name_results
 from codegen.passes.rename import add_prefix
 
 
-def run_passes(selection: Selection, prefix: str) -> Unit:
-    """The selection made ready to print."""
+def run_passes(selection: Selection, prefix: str, *, named_results: bool = False) -> Unit:
+    """The selection made ready to print.
+
+    named_results  whether every returned value gets a local, for dialects that qualify locals
+    """
     unit = Unit(selection.functions, selection.structs)
+    if named_results:
+        unit = name_results(unit)
     return add_prefix(unit, prefix)

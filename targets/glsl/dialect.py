@@ -15,7 +15,7 @@ _TYPES = {
 }
 
 
-def _dialect(name: str, title: str, precision: str = "") -> Dialect:
+def _dialect(name: str, title: str, precision: str = "", precise: str = "") -> Dialect:
     return Dialect(
         target="glsl",
         name=name,
@@ -23,6 +23,7 @@ def _dialect(name: str, title: str, precision: str = "") -> Dialect:
         extension="glsl",
         types=_TYPES,
         precision=precision,
+        precise=precise,
         line_map="#line {line} {file}",
     )
 
@@ -31,11 +32,11 @@ DIALECTS = {
     d.name: d
     for d in (
         _dialect("330", "GLSL 3.30"),
-        _dialect("430", "GLSL 4.30"),
-        _dialect("450", "GLSL 4.50"),
+        _dialect("430", "GLSL 4.30", precise="precise"),
+        _dialect("450", "GLSL 4.50", precise="precise"),
         _dialect("es300", "GLSL ES 3.00", precision="highp"),
         _dialect("es310", "GLSL ES 3.10", precision="highp"),
-        _dialect("vulkan450", "GLSL 4.50 for Vulkan"),
+        _dialect("vulkan450", "GLSL 4.50 for Vulkan", precise="precise"),
     )
 }
 DEFAULT = "430"
