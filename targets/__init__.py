@@ -22,22 +22,24 @@ __all__ = [
 
 TARGETS = ("glsl", "wgsl", "opencl")
 
-_open: dict[str, TimedRuntime] = {}
+_open: dict[tuple[str, tuple[tuple[str, object], ...]], TimedRuntime] = {}
 _opening = Lock()
 
 
-def open_runtime(name: str) -> TimedRuntime:
-    """The runtime of a target, opened at the first call and shared by all later ones.
+def open_runtime(name: str, **settings: object) -> TimedRuntime:
+    """The runtime of a target, opened at the first call and shared by all later ones with the same settings.
 
-    errors  TargetUnavailable names the missing driver or package; ValueError for a name not in TARGETS
+    settings  keyword arguments of the target's own open_runtime, hashable; none for an ordinary run
+    errors    TargetUnavailable names the missing driver or package; ValueError for a name not in TARGETS
     """
     if name not in TARGETS:
         raise ValueError(f"no target is called {name!r}; the targets are {', '.join(TARGETS)}")
+    key = (name, tuple(sorted(settings.items())))
     with _opening:
-        if name not in _open:
+        if key not in _open:
             module = importlib.import_module(f"targets.{name}.runtime")
-            _open[name] = cast(TimedRuntime, module.open_runtime())
-        return _open[name]
+            _open[key] = cast(TimedRuntime, module.open_runtime(**settings))
+        return _open[key]
 
 
 def probe(name: str) -> Device | TargetUnavailable:

@@ -16,6 +16,9 @@ MAX_GROUPS = 65535
 CHUNK_BYTES = 96 << 20
 """Largest buffer in use; below the 128 MiB that WebGPU promises for a storage binding."""
 
+UNIFORM_BYTES = 16384
+"""Size of an input in uniform memory: the least that OpenGL, Vulkan and WebGPU promise for a block."""
+
 UNWRITTEN = 0xDEADDEAD
 """Fills an output before a launch, so that a word that was never written shows."""
 
@@ -35,6 +38,13 @@ def chunk_lanes(slots_in: int, slots_out: int, chunk_bytes: int) -> int:
     lanes = chunk_bytes // (4 * max(slots_in, slots_out))
     groups = min(max(lanes // GROUP_LANES, 1), MAX_GROUPS)
     return groups * GROUP_LANES
+
+
+def padded(words: Words) -> Words:
+    """The words of a chunk, flat, at the fixed size of an input in uniform memory."""
+    block = np.zeros(UNIFORM_BYTES // 4, np.uint32)
+    block[: words.size] = words.ravel()
+    return block
 
 
 def group_count(lanes: int) -> int:

@@ -1,6 +1,7 @@
 """Python packages and command line tools that a target may need and a machine may lack."""
 
 import importlib
+import re
 import shutil
 import subprocess
 from typing import Any
@@ -25,6 +26,13 @@ def first_line(error: BaseException) -> str:
     """The first line of an error's message, or the error's type where there is none."""
     lines = str(error).strip().splitlines()
     return lines[0].rstrip(".") if lines else type(error).__name__
+
+
+def fits(wanted: str, name: str) -> bool:
+    """Whether a device's name contains the wanted words; * and ? stand for anything in between."""
+    words = map(re.escape, re.split(r"([*?])", wanted))
+    pattern = "".join({r"\*": ".*", r"\?": "."}.get(word, word) for word in words)
+    return re.search(pattern, name, re.IGNORECASE) is not None
 
 
 def find_tool(*names: str) -> str | None:

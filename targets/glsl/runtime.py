@@ -1,26 +1,49 @@
-"""Runs GLSL compute programs on OpenGL 4.3 through a context without a window."""
+"""Runs GLSL programs on OpenGL through a context without a window: compute, or fragments on old drivers."""
 
+import importlib
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, Literal, ParamSpec, TypeVar
 
 import numpy as np
 
-from targets.lanes import CHUNK_BYTES, UNWRITTEN, check_words, group_count, run_in_chunks
+from targets.lanes import (
+    CHUNK_BYTES,
+    UNIFORM_BYTES,
+    UNWRITTEN,
+    check_words,
+    group_count,
+    padded,
+    run_in_chunks,
+)
 from targets.packages import first_line, require_package
-from targets.protocol import BuildFailed, Device, TargetUnavailable
+from targets.protocol import BuildFailed, Device, Prepared, TargetUnavailable
 from targets.words import Words
 
 REQUIRED_VERSION = 430
-MISSING_DRIVER = "no OpenGL 4.3 driver answers through EGL ({reason}): apt-get install libegl1 libgl1"
+MISSING_DRIVER = "no OpenGL {need} driver answers through EGL ({reason}): apt-get install libegl1 libgl1"
+SMALLEST_STORAGE_BLOCK = 16 << 20
+"""Bytes of a storage block that every OpenGL driver has to hold."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 
-def open_runtime() -> "GlslRuntime":
-    """Open a context of its own; raises TargetUnavailable."""
-    return GlslRuntime(require_package("moderngl"))
+def open_runtime(
+    require: int = REQUIRED_VERSION, stage: Literal["compute", "fragment"] = "compute", uniforms: bool = False
+) -> "GlslRuntime":
+    """Open a context of its own; raises TargetUnavailable.
+
+    require   version of OpenGL to ask for; compute below 430 needs the driver's ARB extensions
+    stage     what runs a program once per lane: compute invocations or fragments
+    uniforms  whether the input is a uniform block, for programs of the form "uniform"
+    """
+    moderngl = require_package("moderngl")
+    if stage == "fragment":
+        fragment: Any = importlib.import_module("targets.glsl.fragment")
+        runtime: GlslRuntime = fragment.GlslFragmentRuntime(moderngl, require)
+        return runtime
+    return GlslRuntime(moderngl, require, uniforms)
 
 
 class GlslRuntime:
@@ -29,8 +52,10 @@ class GlslRuntime:
     That also keeps the context apart from any other context that a program makes current.
     """
 
-    def __init__(self, moderngl: Any, chunk_bytes: int = CHUNK_BYTES) -> None:
-        self.chunk_bytes = chunk_bytes
+    def __init__(self, moderngl: Any, require: int = REQUIRED_VERSION, uniforms: bool = False) -> None:
+        self.chunk_bytes = UNIFORM_BYTES if uniforms else CHUNK_BYTES
+        self.uniforms = uniforms
+        self._require = require
         self._moderngl = moderngl
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="opengl")
         self._programs: dict[str, Any] = {}
@@ -46,20 +71,28 @@ class GlslRuntime:
             lambda chunk: self.prepare(program, chunk, slots_out), words, slots_out, self.chunk_bytes
         )
 
-    def prepare(self, program: str, words: Words, slots_out: int) -> "GlslPrepared":
+    def prepare(self, program: str, words: Words, slots_out: int) -> Prepared:
         """Build a program and upload its input; see targets.protocol.TimedRuntime."""
         check_words(words, slots_out)
         shader = self.on_thread(self._build, program)
         return GlslPrepared(self, self._context, shader, words, slots_out)
 
+    def raise_error(self) -> None:
+        """Raise the context's error, if there is one. Asking clears it."""
+        error = self._context.error
+        if error != "GL_NO_ERROR":
+            raise RuntimeError(f"OpenGL failed on {self.device.device}: {error}")
+
     def _open(self) -> tuple[Any, Device]:
         try:
-            context = self._moderngl.create_standalone_context(backend="egl", require=REQUIRED_VERSION)
+            context = self._moderngl.create_standalone_context(backend="egl", require=self._require)
         except Exception as error:  # moderngl and glcontext raise bare Exception
-            raise TargetUnavailable(MISSING_DRIVER.format(reason=first_line(error))) from error
+            need = ".".join(map(str, divmod(self._require // 10, 10)))
+            raise TargetUnavailable(MISSING_DRIVER.format(need=need, reason=first_line(error))) from error
         info = context.info
-        # A block may be as small as 16 MiB by the specification.
-        self.chunk_bytes = min(self.chunk_bytes, info["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
+        # Contexts below 4.3 do not say how large a block may be.
+        largest = info.get("GL_MAX_SHADER_STORAGE_BLOCK_SIZE", SMALLEST_STORAGE_BLOCK)
+        self.chunk_bytes = min(self.chunk_bytes, largest)
         major, minor = divmod(context.version_code // 10, 10)
         return context, Device(
             target="glsl",
@@ -71,10 +104,13 @@ class GlslRuntime:
     def _build(self, program: str) -> Any:
         if program not in self._programs:
             try:
-                self._programs[program] = self._context.compute_shader(program)
+                self._programs[program] = self._compile(program)
             except self._moderngl.Error as error:
                 raise BuildFailed(str(error).strip()) from error
         return self._programs[program]
+
+    def _compile(self, program: str) -> Any:
+        return self._context.compute_shader(program)
 
 
 class GlslPrepared:
@@ -87,6 +123,8 @@ class GlslPrepared:
         self._shape = (slots_out, words.shape[1])
         # OpenGL refuses an empty buffer.
         source = np.ascontiguousarray(words) if words.size else np.zeros(1, np.uint32)
+        if runtime.uniforms:
+            source = padded(source)
         blank = np.full(max(slots_out * words.shape[1], 1), UNWRITTEN, np.uint32)
         self._source = runtime.on_thread(context.buffer, source)
         self._result = runtime.on_thread(context.buffer, blank)
@@ -109,11 +147,13 @@ class GlslPrepared:
         lanes = self._shape[1]
         if lanes == 0:
             return
-        self._source.bind_to_storage_buffer(0)
+        if self._runtime.uniforms:
+            self._source.bind_to_uniform_block(0)
+        else:
+            self._source.bind_to_storage_buffer(0)
         self._result.bind_to_storage_buffer(1)
         self._shader["harness_count"] = lanes
         self._shader.run(group_count(lanes))
         self._context.memory_barrier()
         self._context.finish()
-        if self._context.error != "GL_NO_ERROR":
-            raise RuntimeError(f"OpenGL failed on {self._runtime.device.device}: {self._context.error}")
+        self._runtime.raise_error()

@@ -10,8 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from targets.lanes import CHUNK_BYTES, GROUP_LANES, UNWRITTEN, check_words, group_count, run_in_chunks
-from targets.packages import first_line, require_package
+from targets.lanes import (
+    CHUNK_BYTES,
+    GROUP_LANES,
+    UNIFORM_BYTES,
+    UNWRITTEN,
+    check_words,
+    group_count,
+    run_in_chunks,
+)
+from targets.packages import first_line, fits, require_package
 from targets.protocol import BuildFailed, Device, TargetUnavailable
 from targets.words import Words
 
@@ -20,12 +28,13 @@ PREFERRED_PLATFORM = "Portable Computing Language"
 MISSING_DRIVER = "no OpenCL device is here ({reason}): apt-get install pocl-opencl-icd"
 
 
-def open_runtime(options: Sequence[str] = ()) -> "OpenclRuntime":
+def open_runtime(options: Sequence[str] = (), uniforms: bool = False) -> "OpenclRuntime":
     """Open the preferred device, or the one named by VAIR_OPENCL_DEVICE; raises TargetUnavailable.
 
-    options  of the OpenCL compiler, for example ("-cl-std=CL1.2",)
+    options   of the OpenCL compiler, for example ("-cl-std=CL1.2",)
+    uniforms  whether the input is in constant memory, for programs of the form "uniform"
     """
-    return OpenclRuntime(require_package("pyopencl"), options)
+    return OpenclRuntime(require_package("pyopencl"), options, UNIFORM_BYTES if uniforms else CHUNK_BYTES)
 
 
 class OpenclRuntime:
@@ -137,7 +146,7 @@ def _choose_device(cl: Any, wanted: str) -> Any:
         raise TargetUnavailable(MISSING_DRIVER.format(reason=first_line(error))) from error
     if not devices:
         raise TargetUnavailable(MISSING_DRIVER.format(reason="no platform has a device"))
-    fitting = [device for device in devices if wanted.lower() in _full_name(device).lower()]
+    fitting = [device for device in devices if fits(wanted, _full_name(device))]
     if not fitting:
         names = "; ".join(map(_full_name, devices))
         raise TargetUnavailable(f"{DEVICE_VARIABLE}={wanted} names no OpenCL device; here are: {names}")

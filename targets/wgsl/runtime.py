@@ -8,8 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from targets.lanes import CHUNK_BYTES, UNWRITTEN, check_words, group_count, run_in_chunks
-from targets.packages import first_line, require_package
+from targets.lanes import (
+    CHUNK_BYTES,
+    UNIFORM_BYTES,
+    UNWRITTEN,
+    check_words,
+    group_count,
+    padded,
+    run_in_chunks,
+)
+from targets.packages import first_line, fits, require_package
 from targets.protocol import BuildFailed, Device, TargetUnavailable
 from targets.words import Words
 
@@ -22,20 +30,21 @@ PREFERRED_KINDS = ("DiscreteGPU", "IntegratedGPU", "CPU", "Unknown")
 READ_ONLY, READ_WRITE, UNIFORM = "read-only-storage", "storage", "uniform"
 
 
-def open_runtime() -> "WgslRuntime":
+def open_runtime(uniforms: bool = False) -> "WgslRuntime":
     """Open a device on the preferred adapter, or on the one that VAIR_WGPU_ADAPTER names.
 
-    errors  TargetUnavailable
+    uniforms  whether the input is a uniform buffer, for programs of the form "uniform"
+    errors    TargetUnavailable
     """
     # Without the variable wgpu complains twice on standard error.
     os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
-    return WgslRuntime(require_package("wgpu"))
+    return WgslRuntime(require_package("wgpu"), uniforms)
 
 
 class WgslRuntime:
     """WebGPU compute behind one lock."""
 
-    def __init__(self, wgpu: Any, chunk_bytes: int = CHUNK_BYTES) -> None:
+    def __init__(self, wgpu: Any, uniforms: bool = False) -> None:
         self._wgpu = wgpu
         self._lock = RLock()
         self._programs: dict[str, Any] = {}
@@ -44,12 +53,14 @@ class WgslRuntime:
             self._device = adapter.request_device_sync()
         except Exception as error:
             raise TargetUnavailable(MISSING_DRIVER.format(reason=first_line(error))) from error
-        self.chunk_bytes = min(chunk_bytes, self._device.limits["max-storage-buffer-binding-size"])
+        largest = self._device.limits["max-storage-buffer-binding-size"]
+        self.uniforms = uniforms
+        self.chunk_bytes = UNIFORM_BYTES if uniforms else min(CHUNK_BYTES, largest)
         self.device = _describe(adapter)
         self._bindings = self._device.create_bind_group_layout(
             entries=[
                 {"binding": number, "visibility": wgpu.ShaderStage.COMPUTE, "buffer": {"type": kind}}
-                for number, kind in enumerate((READ_ONLY, READ_WRITE, UNIFORM))
+                for number, kind in enumerate((UNIFORM if uniforms else READ_ONLY, READ_WRITE, UNIFORM))
             ]
         )
 
@@ -97,10 +108,14 @@ class WgslPrepared:
         self._shape = (slots_out, words.shape[1])
         # WebGPU refuses an empty buffer.
         source = np.ascontiguousarray(words) if words.size else np.zeros(1, np.uint32)
+        if runtime.uniforms:
+            source = padded(source)
         blank = np.full(max(slots_out * words.shape[1], 1), UNWRITTEN, np.uint32)
         usage = runtime._wgpu.BufferUsage
         self._buffers = [
-            self._gpu.create_buffer_with_data(data=source, usage=usage.STORAGE),
+            self._gpu.create_buffer_with_data(
+                data=source, usage=usage.UNIFORM if runtime.uniforms else usage.STORAGE
+            ),
             self._gpu.create_buffer_with_data(data=blank, usage=usage.STORAGE | usage.COPY_SRC),
             self._gpu.create_buffer_with_data(
                 data=np.array([words.shape[1], 0, 0, 0], np.uint32), usage=usage.UNIFORM
@@ -147,14 +162,14 @@ class WgslPrepared:
 
 
 def _choose_adapter(wgpu: Any, wanted: str) -> Any:
-    """The adapter whose summary contains the wanted words, else the first of the preferred kind."""
+    """The best adapter whose summary contains the wanted words; * and ? stand for anything in between."""
     try:
         adapters = list(wgpu.gpu.enumerate_adapters_sync())
     except Exception as error:
         raise TargetUnavailable(MISSING_DRIVER.format(reason=first_line(error))) from error
     if not adapters:
         raise TargetUnavailable(MISSING_DRIVER.format(reason="the list of adapters is empty"))
-    fitting = [adapter for adapter in adapters if wanted.lower() in adapter.summary.lower()]
+    fitting = [adapter for adapter in adapters if fits(wanted, adapter.summary)]
     if not fitting:
         names = "; ".join(adapter.summary for adapter in adapters)
         raise TargetUnavailable(f"{ADAPTER_VARIABLE}={wanted} names no WebGPU adapter; here are: {names}")
