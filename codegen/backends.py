@@ -30,11 +30,13 @@ def dialects_of(target: str) -> dict[str, Dialect]:
     return found
 
 
-def complete_program(target: str, library: str, body: str, version: str | None = None) -> str:
-    """A library text and the statements of an entry point as one program for the target's runtime."""
+def complete_program(
+    target: str, library: str, body: str, version: str | None = None, form: str = "plain"
+) -> str:
+    """A library text and the statements of an entry point as one program; see targets.harness."""
     harness: Any = importlib.import_module("targets.harness")
     options = {} if version is None else {"version": version}
-    text: str = harness.complete_program(target, library, body, **options)
+    text: str = harness.complete_program(target, library, body, form=form, **options)
     return text
 
 

@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from codegen.backends import complete_program, dialect
-from codegen.emit.dialect import Dialect
-from codegen.emit.module import DEFAULT_PREFIX, emit
-from codegen.emit.stmt import StmtPrinter
 from codegen.evaluate.arrays import Array, Value, arithmetic, convert_inputs
-from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, I32, Scalar, Struct, Type, Vector, leaves
-from codegen.ir.unit import Unit
+from codegen.ir.types import BOOL, F32, Scalar, Struct, Type, Vector, leaves
+from codegen.kernels import PLAIN, KernelOptions, kernel, literal_cases, literal_kernel
 from codegen.library import Library
-from codegen.passes.rename import add_prefix
 
 Words = npt.NDArray[np.uint32]
 
@@ -45,7 +38,7 @@ def execute(
     inputs: Mapping[str, Any],
     runtime: Runtime,
     *,
-    dialect_name: str | None = None,
+    options: KernelOptions = PLAIN,
 ) -> Value:
     """The function's values over arrays of inputs, computed in float32 by a device.
 
@@ -56,41 +49,40 @@ def execute(
     arrays, count = convert_inputs(
         {p.name: p.type for p in function.parameters}, inputs, arithmetic("float32"), name
     )
-    program = kernel(library, name, runtime.device.target, dialect_name)
+    if options.source == "literal":
+        out = _execute_literals(library, name, arrays, count, runtime, options)
+        return unflatten(function.returns, out)
+    program = kernel(library, name, runtime.device.target, options)
     words = flatten([arrays[p.name] for p in function.parameters], count)
     out = runtime.run(program, words, len(leaves(function.returns)))
     return unflatten(function.returns, out)
 
 
-@functools.lru_cache(maxsize=512)
-def kernel(library: Library, name: str, target: str, dialect_name: str | None = None) -> str:
-    """The complete program that maps a function over lanes of words."""
-    chosen = dialect(target, dialect_name)
-    return complete_program(target, emit(library, chosen, [name]), "\n".join(body(library, name, chosen)))
+def _execute_literals(
+    library: Library,
+    name: str,
+    arrays: Mapping[str, Value],
+    count: int,
+    runtime: Runtime,
+    options: KernelOptions,
+) -> Words:
+    """The words of every lane, with its arguments written into the text of a program."""
+    returns = library.function(name).returns
+    slots, most = len(leaves(returns)), literal_cases(returns)
+    parts = []
+    for start in range(0, count, most):
+        taken = min(most, count - start)
+        part = {key: _lanes(value, start, start + taken) for key, value in arrays.items()}
+        program = literal_kernel(library, name, runtime.device.target, part, taken, options)
+        out = runtime.run(program, np.empty((0, 1), np.uint32), taken * slots)
+        parts.append(out.reshape(taken, slots).T)
+    return np.concatenate(parts, axis=1)
 
 
-def body(library: Library, name: str, chosen: Dialect) -> list[str]:
-    """The statements of the entry point: load the words, call, store the words."""
-    selection = library.select([name])
-    renamed = add_prefix(Unit(selection.functions, selection.structs), DEFAULT_PREFIX)
-    function = renamed.functions[-1]
-    slot = 0
-
-    def load(type_: Type) -> ir.Expr:
-        nonlocal slot
-        if isinstance(type_, Scalar):
-            slot += 1
-            return ir.Call(type_, f"load_{type_.name}", (ir.Const(I32, slot - 1),))
-        parts = [f.type for f in type_.fields] if isinstance(type_, Struct) else [type_.element] * type_.size
-        return ir.Construct(type_, tuple(load(part) for part in parts))
-
-    arguments = [load(p.type) for p in function.parameters]
-    printer = StmtPrinter(chosen)
-    call = ir.Call(function.returns, function.name, tuple(arguments))
-    lines = printer.block((ir.Let("result", call),), "    ")
-    for k, (path, scalar) in enumerate(leaves(function.returns)):
-        lines.append(f"    store_{scalar.name}({k}, result{path});")
-    return lines
+def _lanes(value: Value, start: int, stop: int) -> Value:
+    if isinstance(value, dict):
+        return {name: _lanes(part, start, stop) for name, part in value.items()}
+    return value[start:stop]
 
 
 def flatten(values: list[Value], count: int) -> Words:

@@ -1,0 +1,157 @@
+"""Complete programs that map one library function over lanes of words, in every way a driver sees it."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from codegen.backends import complete_program, dialect
+from codegen.emit.dialect import Dialect, with_precise
+from codegen.emit.module import DEFAULT_PREFIX, emit
+from codegen.emit.stmt import StmtPrinter
+from codegen.ir import nodes as ir
+from codegen.ir.types import BOOL, F32, I32, Scalar, Struct, Type, leaves
+from codegen.ir.unit import Unit
+from codegen.library import Library
+from codegen.passes.rename import add_prefix
+
+LITERAL_CASES = 8
+"""Calls with literal arguments in one program, at most."""
+LITERAL_WORDS = 32
+"""Words that all these calls store, at most: what a fragment can write."""
+
+
+@dataclass(frozen=True)
+class KernelOptions:
+    """How a kernel is written.
+
+    dialect  of the target; its default if None
+    version  GLSL only: what follows #version, where the dialect's default does not fit the driver
+    form     of the harness: plain, pair, uniform or fragment; see targets.harness
+    source   where arguments come from: loaded words, or literals in the text
+    precise  whether every float local is qualified, see codegen.emit.dialect.with_precise
+    prelude  text before the library
+    """
+
+    dialect: str | None = None
+    version: str | None = None
+    form: Literal["plain", "pair", "uniform", "fragment"] = "plain"
+    source: Literal["words", "literal"] = "words"
+    precise: bool = False
+    prelude: str = ""
+
+
+PLAIN = KernelOptions()
+
+
+@functools.lru_cache(maxsize=512)
+def kernel(library: Library, name: str, target: str, options: KernelOptions = PLAIN) -> str:
+    """The complete program that loads a function's arguments, calls it and stores its value."""
+    chosen = _dialect(target, options)
+    call = _called(library, name)
+    lines = _pair(call, chosen) if options.form == "pair" else _single(call, chosen)
+    return _complete(library, name, target, options, lines)
+
+
+def literal_kernel(
+    library: Library,
+    name: str,
+    target: str,
+    inputs: Mapping[str, Any],
+    count: int,
+    options: KernelOptions = PLAIN,
+) -> str:
+    """The program of one lane that calls a function with literals, once for each of `count` inputs.
+
+    The words of call j follow those of call j - 1.
+    """
+    function = _called(library, name)
+    printer = StmtPrinter(_dialect(target, options))
+    slots = leaves(function.returns)
+    lines = []
+    for j in range(count):
+        arguments = [_constant(p.type, inputs[p.name], j) for p in function.parameters]
+        call = ir.Call(function.returns, function.name, tuple(arguments))
+        lines += printer.block((ir.Let(f"result_{j}", call),), "    ")
+        lines += _stores(function.returns, f"result_{j}", j * len(slots))
+    return _complete(library, name, target, options, lines)
+
+
+def literal_cases(type_: Type) -> int:
+    """How many calls that return this type one literal_kernel holds."""
+    return max(min(LITERAL_CASES, LITERAL_WORDS // len(leaves(type_))), 1)
+
+
+def _dialect(target: str, options: KernelOptions) -> Dialect:
+    chosen = dialect(target, options.dialect)
+    return with_precise(chosen) if options.precise else chosen
+
+
+def _called(library: Library, name: str) -> ir.Function:
+    selection = library.select([name])
+    return add_prefix(Unit(selection.functions, selection.structs), DEFAULT_PREFIX).functions[-1]
+
+
+def _complete(library: Library, name: str, target: str, options: KernelOptions, lines: list[str]) -> str:
+    text = options.prelude + emit(library, _dialect(target, options), [name])
+    return complete_program(target, text, "\n".join(lines), options.version, options.form)
+
+
+def _single(function: ir.Function, chosen: Dialect) -> list[str]:
+    lines = StmtPrinter(chosen).block((ir.Let("result", _loaded_call(function)),), "    ")
+    return [*lines, *_stores(function.returns, "result", 0)]
+
+
+def _pair(function: ir.Function, chosen: Dialect) -> list[str]:
+    """Both calls stand before the first store, so that a compiler may interleave them."""
+    printer = StmtPrinter(chosen)
+    calls, stores = [], []
+    for j in range(2):
+        take = f"    harness_take({j}{'' if chosen.target == 'wgsl' else 'u'});"
+        calls += [take, *printer.block((ir.Let(f"result_{j}", _loaded_call(function)),), "    ")]
+        stores += [take, *_stores(function.returns, f"result_{j}", 0)]
+    return [*calls, *stores]
+
+
+def _loaded_call(function: ir.Function) -> ir.Call:
+    slot = 0
+
+    def load(scalar: Scalar) -> ir.Expr:
+        nonlocal slot
+        slot += 1
+        return ir.Call(scalar, f"load_{scalar.name}", (ir.Const(I32, slot - 1),))
+
+    arguments = tuple(_built(p.type, load) for p in function.parameters)
+    return ir.Call(function.returns, function.name, arguments)
+
+
+def _built(type_: Type, load: Callable[[Scalar], ir.Expr]) -> ir.Expr:
+    """A value of the type from its scalars, in order."""
+    if isinstance(type_, Scalar):
+        return load(type_)
+    parts = [f.type for f in type_.fields] if isinstance(type_, Struct) else [type_.element] * type_.size
+    return ir.Construct(type_, tuple(_built(part, load) for part in parts))
+
+
+def _constant(type_: Type, values: Any, lane: int) -> ir.Expr:
+    """One lane of an input as literals."""
+    if isinstance(type_, Struct):
+        return ir.Construct(type_, tuple(_constant(f.type, values[f.name], lane) for f in type_.fields))
+    scalars = iter(np.atleast_1d(np.asarray(values[lane])).tolist())
+
+    def literal(scalar: Scalar) -> ir.Expr:
+        value = next(scalars)
+        return ir.Const(scalar, value if scalar == BOOL else float(value) if scalar == F32 else int(value))
+
+    return _built(type_, literal)
+
+
+def _stores(type_: Type, variable: str, first: int) -> list[str]:
+    return [
+        f"    store_{scalar.name}({first + k}, {variable}{path});"
+        for k, (path, scalar) in enumerate(leaves(type_))
+    ]
