@@ -9,6 +9,7 @@ from typing import NoReturn
 from codegen.errors import nearest
 from codegen.frontend import constants
 from codegen.frontend.scope import Names
+from codegen.frontend.settle import NoValueError, settle
 from codegen.frontend.source import LANG, SourceFile, describe
 from codegen.ir import nodes as ir
 from codegen.ir.types import BOOL, F32, I32, U32, VALUE_TYPES, Scalar, Struct, Type, Vector, vector_of
@@ -50,9 +51,16 @@ class ExpressionLowering:
         """The typed expression. `expected` decides the type of integer literals and is otherwise a check."""
         folded = None if self._is_local(node) else constants.fold(node, self._constant)
         e = self._literal(node, folded, expected) if folded is not None else self._lower(node, expected)
+        e = self._settled(node, e)
         if expected is not None and e.type != expected:
             self.fail(node, f"this is {e.type.name}, but {expected.name} is needed here")
         return e
+
+    def _settled(self, node: ast.expr, e: ir.Expr) -> ir.Expr:
+        try:
+            return settle(e)
+        except NoValueError as reason:
+            self.fail(node, f"this constant expression {reason}")
 
     def _is_local(self, node: ast.expr) -> bool:
         return isinstance(node, ast.Name) and node.id in self.scope

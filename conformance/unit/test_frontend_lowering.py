@@ -121,7 +121,11 @@ COUNT = 3
         ("n & MASK", ir.Binary(U32, "&", N, ir.Const(U32, 0x55555555))),
         ("MASK", ir.Const(U32, 0x55555555)),
         ("MASK + 1", ir.Const(U32, 0x55555556)),
-        ("MASK >> 1", ir.Binary(U32, ">>", ir.Const(U32, 0x55555555), ir.Const(U32, 1))),
+        ("MASK >> 1", ir.Const(U32, 0x2AAAAAAA)),
+        ("MASK << 1 ^ ~u32(1)", ir.Const(U32, 0x55555554)),
+        ("u32(2147483647) << 11", ir.Const(U32, 0xFFFFF800)),
+        ("u32(i32(-5))", ir.Const(U32, 2**32 - 5)),
+        ("u32(max(1, 4)) if 1.0 < 2.0 else n", ir.Select(U32, ir.Const(BOOL, True), ir.Const(U32, 4), N)),
     ],
 )
 def test_constants_are_folded_in_double_and_rounded_once(
