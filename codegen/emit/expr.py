@@ -11,6 +11,7 @@ from codegen.ops import BUILTINS
 
 _SPELLING = {"//": "/", "and": "&&", "or": "||", "not": "!", "negate": "-"}
 _PRIMARY = frozenset({"primary"})
+_TESTS = frozenset({"comparison", "and", "or"})
 _CONDITIONAL_PARTS = CONDITION | {"primary"}
 
 
@@ -63,7 +64,13 @@ class ExprPrinter:
         return level(e)
 
     def arguments(self, args: tuple[ir.Expr, ...]) -> str:
-        return ", ".join(self.show(a) for a in args)
+        texts = [self.show(a) for a in args]
+        for k, a in enumerate(args):
+            # WGSL would read f(a < b, c > (d)) as a call of the template a<b, c>.
+            opens = "<" in texts[k] and self.level(a) in _TESTS
+            if opens and any(">" in text for text in texts[k + 1 :]):
+                texts[k] = f"({texts[k]})"
+        return ", ".join(texts)
 
     def binary(self, e: ir.Binary) -> str:
         at = level(e)

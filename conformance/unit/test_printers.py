@@ -26,7 +26,7 @@ from codegen.emit.literal import literal, shortest
 from codegen.emit.stmt import StmtPrinter
 from codegen.errors import Place
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, I32, U32, VALUE_TYPES, VEC3
+from codegen.ir.types import BOOL, F32, I32, U32, VALUE_TYPES, VEC3
 from codegen.ir.verify import verify
 from conformance.unit.support.dialects import DIALECTS, ONE_PER_TARGET, dialect_id, validate
 from conformance.unit.support.neutral import of_ir, returned
@@ -127,6 +127,21 @@ def test_known_trap_parses_back(name: str, dialect: Dialect) -> None:
     e = TRAPS[name](a, b, c)
     text = wrapped(e, dialect)
     assert returned(dialect.target, text) == of_ir(e, dialect), text
+
+
+def test_comparisons_among_arguments_open_no_template() -> None:
+    """f(a < b, c > (d)) is a template in WGSL; an argument that nothing can close stays bare."""
+    a, b = ir.Var(F32, "a"), ir.Var(F32, "b")
+    less, more = ir.Binary(BOOL, "<", a, b), ir.Binary(BOOL, ">", a, b)
+    both = ir.Binary(BOOL, "and", more, less)
+    texts = {
+        "f((a < b), a > b)": (less, more),
+        "f(a > b, a < b)": (more, less),
+        "f((a > b && a < b), a > b)": (both, more),
+    }
+    for wanted, args in texts.items():
+        for dialect in ONE_PER_TARGET:
+            assert ExprPrinter(dialect).show(ir.Call(F32, "f", args)) == wanted
 
 
 def test_conditional_keeps_its_sides() -> None:
