@@ -21,6 +21,10 @@ def binary(op: str, a: Whole, b: Whole) -> Whole:
         high = low
     else:
         low, high = _HULLS[op](a, b)
+        known = (a.low == a.high) & (b.low == b.high)
+        if known.any():  # some lanes of an interval may be exact
+            exact = _exact(op, a.low, b.low)
+            low, high = np.where(known, exact, low), np.where(known, exact, high)
     return _wrapped(low, high, a, first(a.cause, b.cause))
 
 
@@ -67,7 +71,9 @@ def _product(a: Whole, b: Whole) -> Ends:
         np.maximum.reduce(np.broadcast_arrays(*corners)),
     )
     limit = 2.0**52
-    return np.clip(low, -limit, limit).astype(np.int64), np.clip(high, -limit, limit).astype(np.int64)
+    lost = np.maximum(np.abs(low), np.abs(high)) > limit
+    low, high = np.where(lost, -limit, low), np.where(lost, limit, high)
+    return low.astype(np.int64), high.astype(np.int64)
 
 
 def _quotient(a: Whole, b: Whole) -> Ends:
