@@ -7,8 +7,8 @@ Cluster    workers of a Dask scheduler (conformance.executor.cluster, needs the 
 open_executor(workers, scheduler)  the one that the options of a command line ask for
 """
 
-from conformance.executor.jobs import Job, Result, perform
+from conformance.executor.jobs import Job, Result, available, perform
 from conformance.executor.local import Executor, Here, Processes
 from conformance.executor.options import open_executor
 
-__all__ = ["Executor", "Here", "Job", "Processes", "Result", "open_executor", "perform"]
+__all__ = ["Executor", "Here", "Job", "Processes", "Result", "available", "open_executor", "perform"]
