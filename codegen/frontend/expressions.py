@@ -124,6 +124,7 @@ class ExpressionLowering:
                 e = self.lower(values[0], BOOL)
                 for value in values[1:]:
                     e = self._operation(node, _SYMBOLS[type(op)], (e, self.lower(value, BOOL)))
+                    e = self._settled(node, e)
                 return e
             case _:
                 self.fail(node, f"{describe(node)} is outside the shader subset of Python")
