@@ -1,0 +1,63 @@
+"""Random programs from the command line.
+
+python -m conformance.fuzz                        1000 programs on every target that is here
+python -m conformance.fuzz --seed 1 --case 17     that program alone, with its reduction if it fails
+python -m conformance.fuzz --count 100000         as many programs as that
+python -m conformance.fuzz --refusals             damaged sources instead
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import click
+
+from conformance.fuzz.engine import Tally, run_cases
+from conformance.fuzz.refusals import MUTANTS, Refusals, read_damaged
+from conformance.fuzz.report import explain
+from targets import TARGETS, Runtime, TargetUnavailable, open_runtime
+
+
+@click.command()
+@click.option("--seed", default=1, show_default=True, help="Seed of the programs.")
+@click.option("--case", "number", type=int, help="Run this program alone.")
+@click.option("--first", default=0, show_default=True, help="Number of the first program.")
+@click.option("--count", default=1000, show_default=True, help="How many programs.")
+@click.option("--target", "names", multiple=True, type=click.Choice(TARGETS), help="Targets; all by default.")
+@click.option("--refusals", is_flag=True, help="Damage the sources; each must be read or refused in words.")
+def main(
+    seed: int, number: int | None, first: int, count: int, names: tuple[str, ...], refusals: bool
+) -> None:
+    """Make random programs, run them on every target, judge the results by interval."""
+    numbers = range(first, first + count) if number is None else range(number, number + 1)
+    started = time.monotonic()
+    if refusals:
+        read = Refusals()
+        for n in numbers:
+            read_damaged(seed, n, MUTANTS, read)
+        print("\n".join([*read.lines(), *(f"{n}/{k}: {what}\n{text}" for n, k, what, text in read.crashes)]))
+        sys.exit(bool(read.crashes))
+    runtimes = open_targets(names or TARGETS)
+    tally = Tally()
+    run_cases(numbers, seed, runtimes, tally)
+    for finding in tally.findings:
+        print(explain(finding, runtimes))
+    print("\n".join(tally.lines()))
+    print(f"{time.monotonic() - started:.0f} s")
+    sys.exit(bool(tally.findings))
+
+
+def open_targets(names: tuple[str, ...]) -> list[Runtime]:
+    """The runtimes of these targets; those that are not here are named and left out."""
+    runtimes: list[Runtime] = []
+    for name in names:
+        try:
+            runtimes.append(open_runtime(name))
+        except TargetUnavailable as reason:
+            print(f"{name} is left out: {reason}")
+    return runtimes
+
+
+if __name__ == "__main__":
+    main()
