@@ -98,16 +98,15 @@ def add(context: Context, a: Range, b: Range) -> Range:
             low, high = _with_fused(low, high, b, a)
         return settle(context, low, high, codes)
     # Rounding either way, the rounded product's interval holds the unrounded product: fusing adds nothing.
-    low, high = numbers.sum_below(a.low, b.low), numbers.sum_above(a.high, b.high)
-    return settle(context, numbers.down(low), numbers.up(high), codes)
+    return settle(context, numbers.sum_down(a.low, b.low), numbers.sum_up(a.high, b.high), codes)
 
 
 def _with_fused(low: Array, high: Array, a: Range, b: Range) -> tuple[Array, Array]:
     if a.product is None:
         return low, high
-    fused_low, fused_high = numbers.sum_below(a.product[0], b.low), numbers.sum_above(a.product[1], b.high)
-    # The sum of an exact product and a float32 needs more than float64 keeps: rounded outwards.
-    return np.minimum(low, numbers.down(fused_low)), np.maximum(high, numbers.up(fused_high))
+    # Rounded outwards, since float64 may not hold the exact sum of a product and a float32.
+    fused_low, fused_high = numbers.sum_down(a.product[0], b.low), numbers.sum_up(a.product[1], b.high)
+    return np.minimum(low, fused_low), np.maximum(high, fused_high)
 
 
 def subtract(context: Context, a: Range, b: Range) -> Range:
@@ -180,7 +179,8 @@ def divide(context: Context, row: Row, x: Range, y: Range) -> Range:
     for operand, value in (("y", y), ("x", x)):
         bad = outside(row, operand, value)
         if bad is not None and row.reciprocal is not None:
-            bad &= ~((x.low == 1.0) & (x.high == 1.0)) | outside_magnitude(row.reciprocal, y)
+            reciprocal = (x.low == 1.0) & (x.high == 1.0)
+            bad = np.where(reciprocal, outside_magnitude(row.reciprocal, y), bad)
         if bad is not None:
             codes = context.unbounded(codes, bad & _clear(codes), operand, "outside the promised magnitudes")
     low, high = _quotient(x, y)

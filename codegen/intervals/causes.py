@@ -22,9 +22,14 @@ class Cause:
     operand: str
     reason: str
 
-    def __str__(self) -> str:
+    @property
+    def what(self) -> str:
+        """The cause without its line, which moves with every edit of the source."""
         operand = f" of {self.operand}" if self.operand else ""
-        return f"{self.function}:{self.line}: {self.operation}{operand}: {self.reason}"
+        return f"{self.function}: {self.operation}{operand}: {self.reason}"
+
+    def __str__(self) -> str:
+        return f"line {self.line} of {self.what}"
 
 
 class CauseBook:
@@ -40,10 +45,6 @@ class CauseBook:
             self.causes.append(cause)
             self._codes[cause] = len(self.causes)
         return self._codes[cause]
-
-    def text(self, code: int) -> str:
-        """The cause in words; empty for 0."""
-        return str(self.causes[code - 1]) if code else ""
 
 
 def first(*codes: Codes) -> Codes:

@@ -1,7 +1,7 @@
 """What one evaluation carries along: its table, where it is, why values are unbounded, which way lanes go.
 
 A comparison that a lane's intervals do not decide, or a rounding to an integer that may give several, is a
-fork. The lane is followed with the hull of all ways and notes its first fork; codegen.intervals.permitted may
+fork. The lane is followed with the hull of all ways and notes its first fork; codegen.intervals.permit may
 then follow each way on its own, with the operands narrowed to it.
 """
 

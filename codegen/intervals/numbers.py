@@ -77,25 +77,33 @@ def unusual(x: Array) -> bool:
     return bool((bits.view(np.uint64) > _NORMAL_SPAN).any())
 
 
-def sum_below(x: Array, y: Array) -> Array:
-    """x + y, or the float64 below it where float64 rounded the sum upwards."""
+def sum_down(x: Array, y: Array) -> Array:
+    """The largest float32 at or below the exact sum of two float32, or of float32 and a product of two."""
     total = x + y
-    if not _is_exact(x, y, total):
-        total = np.where(_sum_error(x, y, total) < 0.0, np.nextafter(total, -np.inf), total)
-    return total
+    found = down(total)
+    # Between two float32, float64 rounding changes nothing; on one, it may hide on which side the sum is.
+    suspects = np.flatnonzero(found == total)
+    if len(suspects):
+        past = suspects[_sum_error(_at(x, suspects), _at(y, suspects), total[suspects]) < 0.0]
+        if len(past):
+            found[past] = down(np.nextafter(total[past], -np.inf))
+    return found
 
 
-def sum_above(x: Array, y: Array) -> Array:
-    """x + y, or the float64 above it where float64 rounded the sum downwards."""
+def sum_up(x: Array, y: Array) -> Array:
+    """The smallest float32 at or above the exact sum."""
     total = x + y
-    if not _is_exact(x, y, total):
-        total = np.where(_sum_error(x, y, total) > 0.0, np.nextafter(total, np.inf), total)
-    return total
+    found = up(total)
+    suspects = np.flatnonzero(found == total)
+    if len(suspects):
+        past = suspects[_sum_error(_at(x, suspects), _at(y, suspects), total[suspects]) > 0.0]
+        if len(past):
+            found[past] = up(np.nextafter(total[past], np.inf))
+    return found
 
 
-def _is_exact(x: Array, y: Array, total: Array) -> bool:
-    """Whether float64 rounded no sum: then both operands can be taken out of it again."""
-    return bool(((total - x) == y).all() and ((total - y) == x).all())
+def _at(x: Array, lanes: Array) -> Array:
+    return x if len(x) == 1 else np.asarray(x[lanes])
 
 
 def _sum_error(x: Array, y: Array, total: Array) -> Array:

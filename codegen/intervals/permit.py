@@ -11,7 +11,7 @@ import numpy as np
 from codegen.evaluate.arrays import Array, arithmetic, convert_inputs
 from codegen.evaluate.arrays import Value as Arrays
 from codegen.intervals.arithmetic import from_input
-from codegen.intervals.causes import CauseBook
+from codegen.intervals.causes import Cause, CauseBook
 from codegen.intervals.context import Context, Ways
 from codegen.intervals.interpreter import Frame
 from codegen.intervals.tables import Table, load_table
@@ -19,11 +19,11 @@ from codegen.intervals.values import Single, Truth, Value, Whole
 from codegen.ir.types import BOOL, F32, I32, Scalar, Struct, Type, Vector, leaves
 from codegen.library import Library
 
-CHUNK = 8192
+CHUNK = 16384
 """Lanes evaluated together: few enough for the arrays of an operation to stay in the processor's cache."""
-DEPTH = 8
+DEPTH = 6
 """Forks that one lane is followed through; further ones count by their hull."""
-MOST_PARTS = 64
+MOST_PARTS = 32
 """Ways of one lane that are followed at a time; a lane with more keeps the hull that it has."""
 
 
@@ -33,13 +33,13 @@ class Permitted:
 
     low, high   ends, in the shapes of codegen.evaluate.evaluate: float64 for f32, integers, truth values
     codes       int16 (N,): 0 where every component is bounded, else the number of the first cause
-    causes      the causes in words; number k is causes[k - 1]
+    causes      the causes; number k is causes[k - 1]
     """
 
     low: Arrays
     high: Arrays
     codes: Array
-    causes: tuple[str, ...]
+    causes: tuple[Cause, ...]
 
     @property
     def guaranteed(self) -> Array:
@@ -49,9 +49,9 @@ class Permitted:
     def cause(self, lane: int) -> str:
         """Why a lane's result may be anything: operation, operand, place; empty where it is bounded."""
         code = int(self.codes[lane])
-        return self.causes[code - 1] if code else ""
+        return str(self.causes[code - 1]) if code else ""
 
-    def histogram(self) -> dict[str, int]:
+    def histogram(self) -> dict[Cause, int]:
         """Cause -> number of lanes, most frequent first."""
         counts = np.bincount(self.codes, minlength=len(self.causes) + 1)[1:]
         order = np.argsort(-counts, kind="stable")
@@ -114,8 +114,8 @@ class _Run:
             if follow_forks and (forks >= 0).any():
                 self.follow(np.flatnonzero(forks >= 0), forks, widths)
         shape = self.function.returns
-        texts = tuple(str(cause) for cause in self.book.causes)
-        return Permitted(_build(shape, self.low), _build(shape, self.high), self.codes, texts)
+        causes = tuple(self.book.causes)
+        return Permitted(_build(shape, self.low), _build(shape, self.high), self.codes, causes)
 
     def evaluate(self, lanes: Array, ways: Ways | None) -> _Found:
         context = Context(self.table, self.book, len(lanes), ways)
