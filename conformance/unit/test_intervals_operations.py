@@ -1,0 +1,177 @@
+"""Interval operations one by one: rounding, flushing, sign, identity, forks, integers.
+
+Plan.
+  rounding    down and up give float32 neighbours and keep float32 numbers; sums see what float64 loses
+  ulp         the spacing of float32, the larger one at powers of two
+  operations  brute force over the ends: every result that a choice of neighbours can give lies inside
+  identity    x - x is 0, x * x is not negative, equal expressions are one value
+  integers    points are exact and wrap; intervals hold every result
+  branches    early returns, loops and undecided conditions
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from codegen.evaluate import evaluate
+from codegen.intervals import numbers, permitted, whole
+from codegen.intervals.values import Whole
+from conformance.unit.support.sources import library_of
+
+SEED = 20260802
+
+
+def float32_numbers(count: int) -> Any:
+    rng = np.random.default_rng(SEED)
+    words = rng.integers(0, 2**32, 4 * count, dtype=np.uint64).astype(np.uint32)
+    single = words.view(np.float32)
+    normal = (np.abs(single) > 1e-37) & (np.abs(single) < 1e37)
+    return single[normal][:count].astype(np.float64)
+
+
+def test_neighbours() -> None:
+    x = float32_numbers(2000)
+    assert np.array_equal(numbers.down(x), x)
+    assert np.array_equal(numbers.up(x), x)
+    single = x.astype(np.float32)
+    above = np.nextafter(single, np.float32(np.inf)).astype(np.float64)
+    inside = x + (above - x) / 3.0
+    assert np.array_equal(numbers.down(inside), x)
+    assert np.array_equal(numbers.up(inside), above)
+
+
+def test_sums_see_what_float64_loses() -> None:
+    one, tiny = np.array([1.0, 1.0, 1.0]), np.array([2.0**-70, -(2.0**-70), 0.0])
+    step = 2.0**-23
+    assert numbers.sum_down(one, tiny).tolist() == [1.0, 1.0 - step / 2, 1.0]
+    assert numbers.sum_up(one, tiny).tolist() == [1.0 + step, 1.0, 1.0]
+
+
+def test_spacing() -> None:
+    x = np.array([1.0, 1.5, 2.0, 0.75, -3.0, 0.0])
+    assert (numbers.ulp(x) / 2.0**-24).tolist() == [2.0, 2.0, 4.0, 1.0, 4.0, 2.0**-125]
+
+
+OPERATIONS = (
+    "a + b",
+    "a - b",
+    "a * b",
+    "a / b",
+    "max(a, b) - min(a, b)",
+    "floor(a) + b",
+    "abs(a) * b",
+    "-a * a + b",
+)
+
+
+@pytest.mark.parametrize("text", OPERATIONS)
+def test_every_choice_of_neighbours_lies_inside(text: str, tmp_path: Path) -> None:
+    """The operation sees inputs that an addition before it, of something tiny, moves to either neighbour."""
+    library = library_of(
+        tmp_path,
+        f"@helper\ndef plain(a: X, b: X) -> f32:\n    return {text}\n\n\n"
+        "def probe(p: X, q: X, tiny: X) -> f32:\n    return plain(p + tiny, q - tiny)\n",
+    )
+    rng = np.random.default_rng(SEED)
+    p, q = (rng.uniform(-4.0, 4.0, 500).astype(np.float32) for _ in range(2))
+    tiny = np.full(500, 1e-12, np.float32)
+    found: Any = permitted(library, "probe", {"p": p, "q": q, "tiny": tiny}, "wgsl")
+    for a in (p, np.nextafter(p, np.float32(9.0))):
+        for b in (q, np.nextafter(q, np.float32(-9.0))):
+            assert found.contains(evaluate(library, "plain", {"a": a, "b": b})).all()
+
+
+IDENTITIES = {
+    "(a + b) - (a + b)": (0.0, 0.0),
+    "(b + a) * (a + b)": (0.0, np.inf),
+    "sqrt((a + b) * (b + a))": (0.0, np.inf),
+    "length(vec2(a + b, a - b))": (0.0, np.inf),
+    "sqrt(dot(vec2(a + b, a - b), vec2(b + a, a - b)))": (0.0, np.inf),
+}
+
+
+@pytest.mark.parametrize("text", IDENTITIES)
+def test_one_value_is_one_value(text: str, tmp_path: Path) -> None:
+    library = library_of(tmp_path, f"def probe(a: X, b: X) -> f32:\n    return {text}\n")
+    a = np.array([0.1, 1.0, -1e-3, 1e10], np.float32)
+    found: Any = permitted(library, "probe", {"a": a, "b": -a + np.float32(1e-9)}, "wgsl")
+    least, most = IDENTITIES[text]
+    assert found.guaranteed.all()
+    assert (found.low >= least).all()
+    assert (found.high <= most).all()
+
+
+def test_denormals_may_be_read_as_zero(tmp_path: Path) -> None:
+    library = library_of(tmp_path, "def probe(a: X) -> f32:\n    return 1.0 if a > 0.0 else 2.0\n")
+    found: Any = permitted(library, "probe", {"a": np.array([1e-40, 1.0, 0.0], np.float32)}, "wgsl")
+    assert found.low.tolist() == [1.0, 1.0, 2.0]
+    assert found.high.tolist() == [2.0, 1.0, 2.0]
+
+
+def test_forks_are_followed(tmp_path: Path) -> None:
+    """s + x with s the sign of x has no zero in it, whichever way the comparison goes."""
+    library = library_of(
+        tmp_path,
+        "def probe(a: X, b: X) -> f32:\n"
+        "    x = a + b\n    s = 1.0 if x >= 0.0 else -1.0\n    return 1.0 / (s + x)\n",
+    )
+    inputs = {"a": np.array([1e-3], np.float32), "b": np.array([-1e-3], np.float32)}
+    tiny = {"a": np.array([2.0**-127], np.float32), "b": np.array([-(2.0**-128)], np.float32)}
+    for given in (inputs, tiny):
+        found: Any = permitted(library, "probe", given, "wgsl")
+        assert found.guaranteed.all()
+        assert np.abs(found.low[0]) <= 1.001
+        assert np.abs(found.high[0]) <= 1.001
+    assert not permitted(library, "probe", tiny, "wgsl", follow_forks=False).guaranteed.any()
+
+
+BRANCHES = """
+def probe(n: Annotated[u32, Finite()], x: X) -> f32:
+    total = x
+    for i in range(5):
+        if n % 3 == 1:
+            total = total * 0.5
+        else:
+            total += 0.1
+        if total > 3.0:
+            return -total
+    return total
+"""
+
+
+def test_branches_and_loops(tmp_path: Path) -> None:
+    library = library_of(tmp_path, BRANCHES)
+    rng = np.random.default_rng(SEED)
+    inputs = {
+        "n": rng.integers(0, 100, 3000).astype(np.uint32),
+        "x": rng.uniform(-4.0, 4.0, 3000).astype(np.float32),
+    }
+    found: Any = permitted(library, "probe", inputs, "wgsl")
+    assert found.contains(evaluate(library, "probe", inputs)).all()
+    assert ((found.high - found.low) < 1e-5).mean() > 0.99
+
+
+@pytest.mark.parametrize("op", ["+", "-", "*", "//", "%", "<<", ">>", "&", "|", "^"])
+def test_integers(op: str) -> None:
+    rng = np.random.default_rng(SEED)
+    limit = 40 if op in ("<<", ">>") else 2**32
+    a = rng.integers(0, 2**32 - 8, 300)
+    b = rng.integers(1, limit - 8 if limit > 40 else 24, 300)
+    numpy_op = {"//": np.floor_divide, "%": np.remainder, "<<": np.left_shift, ">>": np.right_shift}
+    plain = {"+": np.add, "-": np.subtract, "*": np.multiply, "&": np.bitwise_and, "|": np.bitwise_or}
+    function = {**numpy_op, **plain, "^": np.bitwise_xor}[op]
+    wide = whole.binary(op, Whole(a, a + 7, False), Whole(b, b + 7, False))
+    for i in range(8):
+        for j in range(8):
+            exact = function((a + i).astype(np.uint32), (b + j).astype(np.uint32)).astype(np.int64)
+            point = whole.binary(op, point_of(a + i), point_of(b + j))
+            assert np.array_equal(point.low, exact)
+            assert ((wide.low <= exact) & (exact <= wide.high)).all()
+
+
+def point_of(a: Any) -> Whole:
+    return Whole(a, a, False)

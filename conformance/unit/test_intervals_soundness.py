@@ -1,0 +1,166 @@
+"""Intervals hold every result that is known to be permitted, for every function and table.
+
+Plan. For each public function, random points of its domain and every family of hard cases that fits:
+  evaluator  the value of float32 arithmetic, op by op, lies inside under every table (over the suite more
+             than 1e6 lanes); under OpenCL except where its own built-ins promise more than that arithmetic
+  exact      the value of exact arithmetic lies inside: float64 on all lanes, with slack for its own error,
+             and mpmath on some. It holds for rounding to either neighbour; a table that rounds to nearest
+             leaves less freedom (0.1 + 0.2 is one float32, not the exact sum), so it is tested with its
+             rounding set to either
+  forks      following forks only narrows
+  tightness  tables that promise too much are caught, operation by operation
+Not covered here: devices (conformance/execute/test_intervals_devices.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from codegen.evaluate import evaluate
+from codegen.intervals import TABLES, Permitted, Table, load_table, permitted
+from codegen.intervals.accuracy import Absolute, Ulp
+from codegen.library import load_library
+from conformance.check.engine import draws
+from conformance.unit.support.sources import library_of
+
+LIBRARY = load_library()
+UNIFORM, FAMILY, PRECISE = 1000, 80, 12
+"""Random lanes, lanes of each family, and lanes in mpmath, per function."""
+DOUBLE_SLACK = 2.0**-32
+"""Share of an interval's larger end by which float64's own rounding may leave it: 2^-52 times the
+cancellation that a float32 formula can have and still keep a digit."""
+EXTENDED = {
+    "latlong_uv": "OpenCL's length neither overflows nor loses small components; float32 squares underflow",
+}
+"""Functions whose float32 evaluation is no OpenCL result at some hard cases, and why."""
+
+
+def slack(found: Permitted) -> tuple[Any, Any]:
+    """Ends moved outwards by what float64 may err."""
+
+    def moved(low: Any, high: Any) -> tuple[Any, Any]:
+        if isinstance(low, Mapping):
+            pairs = {name: moved(low[name], high[name]) for name in low}
+            return {n: p[0] for n, p in pairs.items()}, {n: p[1] for n, p in pairs.items()}
+        if low.dtype.kind != "f":
+            return low, high
+        by = DOUBLE_SLACK * np.maximum(np.abs(low), np.abs(high))
+        return low - by, high + by
+
+    return moved(found.low, found.high)
+
+
+def inside(found: Permitted, value: Any) -> np.ndarray[Any, Any]:
+    low, high = slack(found)
+    return replace(found, low=low, high=high).contains(value)
+
+
+def rows(inputs: Any, count: int) -> Any:
+    if isinstance(inputs, Mapping):
+        return {name: rows(value, count) for name, value in inputs.items()}
+    return inputs[:count]
+
+
+def as_double(value: Any) -> Any:
+    """mpmath's numbers rounded to float64, which is far inside float32's grid."""
+    if isinstance(value, Mapping):
+        return {name: as_double(v) for name, v in value.items()}
+    return value.astype(np.float64) if value.dtype == object else value
+
+
+@pytest.mark.parametrize("name", LIBRARY.public)
+def test_interval_holds_the_evaluator(name: str) -> None:
+    for d in draws(LIBRARY.function(name), UNIFORM, FAMILY):
+        single = evaluate(LIBRARY, name, d.inputs)
+        for table in TABLES:
+            ok = permitted(LIBRARY, name, d.inputs, table, follow_forks=table == "wgsl").contains(single)
+            if not (name in EXTENDED and table.startswith("opencl")):
+                assert ok.all(), f"{table}, {d.family}, lane {np.flatnonzero(~ok)[0]}"
+
+
+@pytest.mark.parametrize("name", LIBRARY.public)
+def test_interval_holds_exact_arithmetic(name: str) -> None:
+    tables = [replace(load_table(t), rounding="either") for t in ("wgsl", "opencl")]
+    for d in draws(LIBRARY.function(name), UNIFORM // 2, FAMILY // 2):
+        double = evaluate(LIBRARY, name, d.inputs, "float64")
+        some = rows(d.inputs, PRECISE)
+        with mpmath.workdps(50), np.errstate(all="ignore"):
+            precise = as_double(evaluate(LIBRARY, name, some, "mpmath"))
+        for table in tables:
+            ok = inside(permitted(LIBRARY, name, d.inputs, table), double)
+            assert ok.all(), f"float64: {table.name}, {d.family}, lane {np.flatnonzero(~ok)[0]}"
+            ok = inside(permitted(LIBRARY, name, some, table), precise)
+            assert ok.all(), f"mpmath: {table.name}, {d.family}, lane {np.flatnonzero(~ok)[0]}"
+
+
+@pytest.mark.parametrize("name", ["hammersley", "latlong_direction", "half_vector", "shell_strand_mask"])
+def test_following_forks_only_narrows(name: str) -> None:
+    for d in draws(LIBRARY.function(name), UNIFORM, FAMILY):
+        wide = permitted(LIBRARY, name, d.inputs, "wgsl", follow_forks=False)
+        narrow = permitted(LIBRARY, name, d.inputs, "wgsl")
+        assert (narrow.guaranteed >= wide.guaranteed).all()
+        assert wide.contains(narrow.low).all()
+        assert wide.contains(narrow.high).all()
+
+
+TOO_TIGHT: dict[str, tuple[str, Ulp | Absolute]] = {
+    "1.0 / a": ("/", Ulp(0.1)),
+    "inverse_sqrt(a)": ("inverse_sqrt", Ulp(0.1)),
+    "sqrt(a)": ("sqrt", Ulp(0.1)),
+    "exp(a)": ("exp", Ulp(0.1)),
+    "exp2(a)": ("exp2", Ulp(0.1)),
+    "log(a)": ("log", Absolute(1e-9, (0.5, 2.0), Ulp(0.1))),
+    "log2(a)": ("log2", Absolute(1e-9, (0.5, 2.0), Ulp(0.1))),
+    "sin(a)": ("sin", Absolute(1e-9, (-3.0, 3.0))),
+    "cos(a)": ("cos", Ulp(0.1)),
+    "atan2(a, 2.0)": ("atan2", Ulp(0.1)),
+}
+
+
+@pytest.mark.parametrize("text", TOO_TIGHT)
+def test_too_tight_a_row_is_caught(text: str, tmp_path: Path) -> None:
+    operation, accuracy = TOO_TIGHT[text]
+    library = library_of(tmp_path, f"def probe(a: X) -> f32:\n    return {text}\n")
+    inputs = {"a": np.linspace(0.1, 2.9, 999).astype(np.float32)}
+    single = evaluate(library, "probe", inputs)
+    table = load_table("wgsl")
+    assert permitted(library, "probe", inputs, table).contains(single).all()
+    tight = replace(table, rows={**table.rows, operation: replace(table.row(operation), accuracy=accuracy)})
+    assert not permitted(library, "probe", inputs, tight).contains(single).all()
+
+
+def changed(table: Table, **changes: Any) -> Table:
+    return replace(table, **changes)
+
+
+def test_too_tight_a_setting_is_caught(tmp_path: Path) -> None:
+    library = library_of(tmp_path, "def probe(a: X, b: X, c: X) -> f32:\n    return a * b + c\n")
+    rng = np.random.default_rng(20260801)
+    a, b = (rng.uniform(1.0, 2.0, 2000).astype(np.float32) for _ in range(2))
+    exact = a.astype(np.float64) * b.astype(np.float64)
+    c = -exact.astype(np.float32)
+    inputs = {"a": a, "b": b, "c": c}
+    fused = (exact + c.astype(np.float64)).astype(np.float32)
+    upward = np.nextafter(exact.astype(np.float32), np.float32(9.0)) + c
+    wgsl, opencl = load_table("wgsl"), load_table("opencl")
+    assert permitted(library, "probe", inputs, wgsl).contains(fused).all()
+    assert permitted(library, "probe", inputs, opencl).contains(fused).all()
+    assert not permitted(library, "probe", inputs, changed(opencl, fused=False)).contains(fused).all()
+    above = exact > exact.astype(np.float32)
+    assert permitted(library, "probe", inputs, wgsl).contains(upward)[above].all()
+    assert (
+        not permitted(library, "probe", inputs, changed(wgsl, rounding="nearest"))
+        .contains(upward)[above]
+        .all()
+    )
+    tiny = {"a": a, "b": np.full(2000, 2.0**-127, np.float32), "c": np.zeros(2000, np.float32)}
+    flushed = np.zeros(2000, np.float32)
+    assert permitted(library, "probe", tiny, wgsl).contains(flushed).all()
+    assert not permitted(library, "probe", tiny, changed(wgsl, flush=False)).contains(flushed).any()
