@@ -7,9 +7,10 @@ from importlib import metadata
 from typing import Literal
 
 from targets import TARGETS, Device, probe
+from targets.drivers import catalogue, present, strings
 from targets.packages import find_tool, run_tool
 
-Kind = Literal["driver", "validator", "package"]
+Kind = Literal["driver", "named driver", "validator", "package"]
 
 DRIVER_HINTS = {
     "glsl": "apt-get install --no-install-recommends libegl1 libgl1",
@@ -29,7 +30,7 @@ class Row:
     """One component.
 
     component  target of a driver, command of a validator, or name of a package
-    kind       driver, validator or package
+    kind       driver (what a target opens by itself), named driver, validator or package
     found      whether it is here and works
     version    its version, a driver's with its device; empty where it is missing
     hint       what installs it; for a driver that is missing also why it does not run
@@ -55,6 +56,19 @@ def _drivers() -> Iterator[Row]:
             yield Row(target, "driver", True, version, DRIVER_HINTS[target])
         else:
             yield Row(target, "driver", False, "", str(answer))
+
+
+def drivers_by_name() -> list[Row]:
+    """Every driver of the catalogue, opened in a process of its own; takes seconds."""
+    rows = []
+    for name, answer in present().items():
+        known = catalogue()[name]
+        if isinstance(answer, Device):
+            version = "; ".join(strings(answer))
+            rows.append(Row(name, "named driver", True, version, known.install))
+        else:
+            rows.append(Row(name, "named driver", False, "", str(answer)))
+    return rows
 
 
 def _validators() -> Iterator[Row]:

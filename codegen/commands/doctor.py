@@ -12,7 +12,7 @@ import click
 def command() -> None:
     """Say which drivers, validators and packages are here; what to install for the rest."""
     doctor: Any = importlib.import_module("targets.doctor")
-    rows = doctor.report()
+    rows = [*doctor.report(), *doctor.drivers_by_name()]
     width = max(len(row.component) for row in rows)
     kind = ""
     for row in rows:
@@ -23,4 +23,6 @@ def command() -> None:
         click.echo(f"  {'+' if row.found else '-'} {row.component.ljust(width)}  {state}")
     drivers = [row for row in rows if row.kind == "driver"]
     found = sum(row.found for row in drivers)
-    click.echo(f"\n{found} of {len(drivers)} drivers are ready")
+    click.echo(
+        f"\nvair check --driver NAME checks on a named driver\n{found} of {len(drivers)} drivers are ready"
+    )
