@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -37,11 +37,15 @@ Run = Callable[[Library, str, Mapping[str, Any]], Any]
 
 @dataclass(frozen=True)
 class Backend:
-    """Something that computes a function in float32: a target's device, or the evaluator."""
+    """Something that computes a function in float32: a target's device, or the evaluator.
+
+    name  as a replay identity carries it: the target, or a driver with its mode
+    """
 
     target: str
     driver: str
     run: Run
+    name: str = ""
 
 
 def backend(target: str) -> Backend:
@@ -87,6 +91,17 @@ def draw(function: Function, family: str, count: int, seed: int) -> Draw:
     )
 
 
+def only_lane(whole: Draw, lane: int) -> Draw:
+    """The draw cut down to one lane."""
+
+    def cut(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {name: cut(v) for name, v in value.items()}
+        return value[lane : lane + 1]
+
+    return replace(whole, inputs=cut(whole.inputs))
+
+
 def _length(inputs: Mapping[str, Any]) -> int:
     first = next(iter(inputs.values()))
     return _length(first) if isinstance(first, Mapping) else len(first)
@@ -97,7 +112,7 @@ def check_function(
 ) -> FunctionResult:
     """Check one function: every finite input inside its domain gives a finite result within its bounds."""
     function = library.function(name)
-    result = FunctionResult(name, on.target, on.driver)
+    result = FunctionResult(name, on.target, on.driver, backend=on.name or on.target)
     bounds = [b for b in library.bounds.get(name, ()) if not b.targets or on.target in b.targets]
     started = time.perf_counter()
     if not bounds:
@@ -220,7 +235,7 @@ def _failure(
             distance = np.max(measure.ulps(a[lane : lane + 1], wanted[name][lane : lane + 1]))
             distances.append(f"{name + ' ' if name else ''}{distance:.4g} ULP")
     return Failure(
-        identity=Identity(result.function, result.target, d.family, d.count, d.seed, lane),
+        identity=Identity(result.function, result.backend, d.family, d.count, d.seed, lane),
         driver=result.driver,
         reason=reason,
         inputs=show.lane_inputs(d.inputs, lane),

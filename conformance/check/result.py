@@ -52,11 +52,19 @@ class BoundResult:
 
 @dataclass
 class FunctionResult:
-    """One function on one target."""
+    """One function on one backend.
+
+    backend  as a replay identity carries it: the target, or a driver with its mode
+    stage    how far it came: emit, compile, execute (where it stopped), or judged
+    known    the reason of a failure that was expected, see conformance.drivers.known
+    """
 
     function: str
     target: str
     driver: str
+    backend: str = ""
+    stage: str = "judged"
+    known: str = ""
     lanes: int = 0
     non_finite: int = 0
     ambiguous: int = 0
@@ -70,13 +78,20 @@ class FunctionResult:
     def passed(self) -> bool:
         return not self.failures and not self.broken
 
+    @property
+    def accepted(self) -> bool:
+        """Passed, or failed as expected."""
+        return self.passed or bool(self.known)
+
     def as_data(self) -> dict[str, Any]:
         """Plain data for the JSON result."""
         return {
             "function": self.function,
             "target": self.target,
             "driver": self.driver,
+            "backend": self.backend,
             "passed": self.passed,
+            "known_failure": self.known or None,
             "broken": self.broken or None,
             "lanes": self.lanes,
             "non_finite": self.non_finite,

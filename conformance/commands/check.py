@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import click
 from rich.console import Console
@@ -16,43 +14,68 @@ from codegen.backends import TARGETS
 from codegen.errors import UserError, unknown
 from codegen.files import write_bytes, write_text
 from codegen.library import VERSION, Library, load_library
-from conformance.check.engine import Backend, Draw, backend, check_function, draw
+from conformance.check.engine import Backend, backend, check_function, draw, only_lane
 from conformance.check.identity import Identity
 from conformance.check.junit import junit_bytes
 from conformance.check.result import FunctionResult
+from conformance.commands.check_drivers import check_drivers, replay_on_driver
 from targets import TargetUnavailable
 
 CHECKABLE = (*TARGETS, "numpy")
 
 
 @click.command("check")
-@click.option("--target", "names", multiple=True, help="glsl, wgsl, opencl, or numpy (the evaluator); repeatable.")
+@click.option(
+    "--target", "names", multiple=True, help="glsl, wgsl, opencl, or numpy (the evaluator); repeatable."
+)
+@click.option(
+    "--driver", "drivers", multiple=True, help="A driver of vair doctor by name, or all; repeatable."
+)
+@click.option("--mode", "modes", multiple=True, help="With --driver: a mode by name, or all; repeatable.")
+@click.option("--record", is_flag=True, help="With --driver: keep the results under conformance/results.")
 @click.option("--function", "functions", multiple=True, help="Check this function only; repeatable.")
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the results as JSON.")
-@click.option("--junit", "junit_file", type=click.Path(path_type=Path), help="Write the results as JUnit XML.")
-@click.option("--replay", help="Run one case again: the identity that a failure printed.")
+@click.option(
+    "--junit", "junit_file", type=click.Path(path_type=Path), help="Write the results as JUnit XML."
+)
+@click.option("--replay", "replayed", help="Run one case again: the identity that a failure printed.")
 def command(
     names: tuple[str, ...],
+    drivers: tuple[str, ...],
+    modes: tuple[str, ...],
+    record: bool,
     functions: tuple[str, ...],
     json_file: Path | None,
     junit_file: Path | None,
-    replay: str | None,
+    replayed: str | None,
 ) -> int:
     """Check every function on every driver of this machine against references and declared bounds."""
     library = load_library()
-    if replay is not None:
-        return run_replay(library, Identity.parse(replay))
+    if replayed is not None:
+        return run_replay(library, Identity.parse(replayed))
     wanted = [library.function(name).name for name in functions] or list(library.public)
-    backends, missing = open_backends(names)
+    complaints: list[str] = []
+    if drivers:
+        if names:
+            raise UserError("--target and --driver exclude each other: a driver has its target")
+        if record and functions:
+            raise UserError("--record keeps the results of all functions; leave out --function")
+        results, missing, complaints = check_drivers(library, wanted, drivers, modes, record)
+    elif modes or record:
+        raise UserError("--mode and --record need --driver")
+    else:
+        backends, missing = open_backends(names)
+        results = run_checks(library, wanted, backends)
     for sentence in missing:
         click.echo(f"skipped   {sentence}")
-    results = run_checks(library, wanted, backends)
-    report(results, len(wanted), backends)
+    report(results, len(wanted))
+    for sentence in complaints:
+        click.echo(f"FAILED    {sentence}")
     if json_file is not None:
         write_text(json_file, as_json(results, missing))
     if junit_file is not None:
         write_bytes(junit_file, junit_bytes(results, missing))
-    return 0 if all(r.passed for r in results) else 1
+    return 0 if all(r.accepted for r in results) and not complaints else 1
 
 
 def open_backends(names: tuple[str, ...]) -> tuple[list[Backend], list[str]]:
@@ -89,21 +112,27 @@ def run_checks(library: Library, functions: list[str], backends: list[Backend]) 
     return results
 
 
-def report(results: list[FunctionResult], functions: int, backends: list[Backend]) -> None:
+def report(results: list[FunctionResult], functions: int) -> None:
     """Failures in full, then one line per backend."""
     for r in results:
+        if r.known:
+            click.echo(f"known     {r.function} on {r.backend}: {r.known}")
+            continue
         if r.broken:
-            click.echo(f"FAILED    {r.function} on {r.target}: {r.broken}")
+            click.echo(f"FAILED    {r.function} on {r.backend}: {r.broken}")
         for failure in r.failures:
             click.echo("FAILED    " + "\n          ".join(failure.lines()))
-    for on in backends:
-        own = [r for r in results if r.target == on.target]
+    width = max((len(r.backend) for r in results), default=9)
+    for name in dict.fromkeys(r.backend for r in results):
+        own = [r for r in results if r.backend == name]
         passed = sum(r.passed for r in own)
+        known = sum(bool(r.known) for r in own)
         lanes = sum(r.lanes for r in own)
         bad = sum(r.non_finite for r in own)
         click.echo(
-            f"{on.target:<9} {passed} of {functions} functions within their bounds, {lanes} inputs, "
-            f"{bad} non-finite results, {sum(r.seconds for r in own):.1f} s  ({on.driver})"
+            f"{name.ljust(width)} {passed} of {functions} functions within their bounds, "
+            f"{f'{known} known failures, ' if known else ''}{lanes} inputs, "
+            f"{bad} non-finite results, {sum(r.seconds for r in own):.1f} s  ({own[0].driver})"
         )
 
 
@@ -115,28 +144,26 @@ def as_json(results: list[FunctionResult], missing: list[str]) -> str:
 
 def run_replay(library: Library, identity: Identity) -> int:
     """Draw one input again, run it, and print what came out and what was expected."""
+    if "+" in identity.target:
+        return show_replay(replay_on_driver(library, identity))
     if identity.target not in CHECKABLE:
         raise unknown("target", identity.target, CHECKABLE)
     function = library.function(identity.function)
     (on,), _ = open_backends((identity.target,))
     whole = draw(function, identity.family, identity.count, identity.seed)
     result = check_function(library, function.name, on, [only_lane(whole, identity.lane)])
+    return show_replay(result)
+
+
+def show_replay(result: FunctionResult) -> int:
+    """Print one replayed lane; returns the exit status."""
+    if result.broken:
+        click.echo(f"{result.function} on {result.driver}: {result.broken}")
     for failure in result.failures:
         click.echo("\n".join(failure.lines()[:-1]))
     for bound in result.bounds:
         if bound.lanes:
-            click.echo(f"{function.name} on {on.driver}\n  inputs    {bound.worst}")
+            click.echo(f"{result.function} on {result.driver}\n  inputs    {bound.worst}")
             click.echo(f"  bound     {bound.bound}\n  measured  {bound.measured:.6g}")
     click.echo("passed" if result.passed else "failed")
     return 0 if result.passed else 1
-
-
-def only_lane(whole: Draw, lane: int) -> Draw:
-    """The draw cut down to one lane."""
-
-    def cut(value: Any) -> Any:
-        if isinstance(value, dict):
-            return {name: cut(v) for name, v in value.items()}
-        return value[lane : lane + 1]
-
-    return replace(whole, inputs=cut(whole.inputs))

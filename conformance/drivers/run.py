@@ -1,0 +1,110 @@
+"""Running drivers by name, each in processes of its own, and putting their results together."""
+
+from __future__ import annotations
+
+import pickle
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from conformance.check.identity import Identity
+from conformance.check.result import FunctionResult
+from conformance.drivers.modes import Mode
+from conformance.drivers.worker import Job, backend_name
+from targets import Device, TargetUnavailable
+from targets.drivers import Driver, environment_of, strings
+
+ROOT = Path(__file__).parents[2]
+MODULE = "conformance.drivers.worker"
+
+Report = Callable[[FunctionResult], None]
+
+
+@dataclass(frozen=True)
+class DriverRun:
+    """The results of one driver in one mode."""
+
+    driver: Driver
+    device: Device
+    mode: Mode
+    results: tuple[FunctionResult, ...]
+
+
+def run_driver(
+    chosen: Driver,
+    device: Device,
+    how: Mode,
+    functions: Sequence[str],
+    told: Report = lambda result: None,
+    *,
+    uniform: int | None = None,
+    family: int | None = None,
+    replay: Identity | None = None,
+) -> DriverRun:
+    """Check functions on a driver in a mode.
+
+    device   what the driver answered when it was probed
+    told     called with every result as it comes
+    uniform, family  how many points; None: as many as the mode asks for
+    replay   only this lane
+    raises   TargetUnavailable where the driver does not open
+
+    Where the process ends before a function's result, that function failed to execute, and a new process
+    goes on with the rest.
+    """
+    results: list[FunctionResult] = []
+    left = list(functions)
+    while left:
+        job = Job(chosen.name, how.name, tuple(left), uniform, family, replay)
+        found, ending = _process(chosen, job, told)
+        results += found
+        left = left[len(found) :]
+        if left:
+            lost = FunctionResult(
+                left.pop(0),
+                chosen.target,
+                "; ".join(strings(device)),
+                backend=backend_name(chosen.name, how.name),
+                stage="execute",
+                broken=f"does not execute: the driver's process ended {ending}",
+            )
+            told(lost)
+            results.append(lost)
+    return DriverRun(chosen, device, how, tuple(results))
+
+
+def _process(chosen: Driver, job: Job, told: Report) -> tuple[list[FunctionResult], str]:
+    """The results of one process, and how it ended."""
+    found: list[FunctionResult] = []
+    with tempfile.TemporaryFile() as noise:
+        with subprocess.Popen(
+            [sys.executable, "-m", MODULE],
+            env=environment_of(chosen),
+            cwd=ROOT,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=noise,
+        ) as process:
+            assert process.stdin is not None and process.stdout is not None
+            process.stdin.write(pickle.dumps(job))
+            process.stdin.close()
+            for answer in _answers(process.stdout):
+                if isinstance(answer, str):
+                    raise TargetUnavailable(answer)
+                told(answer)
+                found.append(answer)
+        noise.seek(0)
+        last = noise.read().decode(errors="replace").strip().splitlines()[-1:]
+    return found, " ".join([f"with status {process.returncode}", *last])
+
+
+def _answers(pipe: Any) -> Iterable[Any]:
+    while True:
+        try:
+            yield pickle.load(pipe)
+        except (EOFError, pickle.UnpicklingError):
+            return
