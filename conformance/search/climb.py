@@ -71,6 +71,9 @@ def aimed(
     """The population with every lane moved into the domain of the bound it aims at, as far as that domain
     speaks of single numbers; what it says of angles is left to chance and selection."""
     moved = {path: values.copy() for path, values in population.items()}
+    free = {
+        leaf.path for leaf in leaves(objective.function.parameters) if domains.kind(leaf.domain) == "Interval"
+    }
     for k, bound in enumerate(objective.bounds):
         for text, (low, high) in bound.where.items():
             path, _, component = text.rpartition(".")
@@ -78,6 +81,8 @@ def aimed(
             if values is None and component in tuple("xyzw"):
                 whole = moved.get(tuple(path.split(".")))
                 values = whole[:, "xyzw".index(component)] if whole is not None and whole.ndim == 2 else None
+            if not {tuple(text.split(".")), tuple(path.split("."))} & free:
+                continue  # a component of a unit vector does not go alone
             if values is None or values.ndim != 1 or values.dtype != np.float32:
                 continue
             inside = (aim != k) | ((values >= low) & (values <= high))

@@ -67,7 +67,8 @@ def is_current(library: Library, row: found.Row) -> bool:
         return False
     domains = {f"{b.field}: {b.domain}" if b.field else b.domain for b in library.bounds.get(name, ())}
     try:
-        found.inputs_of(library.function(name), [row["inputs"]])
+        inputs = found.inputs_of(library.function(name), [row["inputs"]])
     except ValueError:
         return False
-    return row["domain"] in domains
+    inside = found.inside_domains(library.function(name), inputs)
+    return row["domain"] in domains and bool(inside.all())
