@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from codegen.intervals import permitted
 from codegen.library import Library
 from conformance.check import measure
-from conformance.check.engine import Draw, draws, expected_of, find_reference
+from conformance.check.engine import draws, expected_of, find_reference
 from conformance.check.features import applies
+from conformance.guarantees.sample import Sample, together
 from conformance.reference import ambiguous
 
 UNIFORM_COUNT = 4000
 """Random points per function: a guaranteed share is known to about 1 / 4000."""
 FAMILY_COUNT = 250
 """Points from each family of hard cases."""
+TARGETS = {"wgsl": "wgsl", "opencl": "opencl", "opencl_relaxed": "opencl"}
+"""The target whose bounds a table is held against; glsl for all others."""
 
 
 @dataclass
@@ -43,51 +45,52 @@ class Guarantee:
         return self.uniform == 1.0 and self.hard == 1.0
 
 
-def sample(library: Library, name: str) -> list[tuple[Draw, Any, Any]]:
-    """The inputs of a function with the reference's results (None: no reference) and doubtful lanes."""
+@dataclass(frozen=True)
+class Drawn:
+    """Inputs of a function with the reference's results (None: no reference) and the doubtful lanes."""
+
+    sample: Sample
+    truth: Any
+    doubtful: npt.NDArray[np.bool_]
+
+
+def drawn_for(library: Library, name: str) -> Drawn:
+    """The inputs on which a function is surveyed."""
     function = library.function(name)
+    sample = together(draws(function, UNIFORM_COUNT, FAMILY_COUNT))
     reference = find_reference(library, function)
     base = function.base if function.kind == "variant" else None
-    return [
-        (d, None if reference is None else expected_of(reference, d.inputs), ambiguous(name, d.inputs, base))
-        for d in draws(function, UNIFORM_COUNT, FAMILY_COUNT)
-    ]
+    truth = None if reference is None else expected_of(reference, sample.inputs)
+    return Drawn(sample, truth, ambiguous(name, sample.inputs, base))
 
 
-def survey(library: Library, name: str, table: str, drawn: Iterable[tuple[Draw, Any, Any]]) -> Guarantee:
+def survey(library: Library, name: str, table: str, drawn: Drawn) -> Guarantee:
     """The guarantee of one table for one function on the drawn inputs."""
-    targets = {"wgsl": "wgsl", "opencl": "opencl", "opencl_relaxed": "opencl"}
-    bounds = library.bounds.get(name, ())
-    errors: list[float | None] = [None] * len(bounds)
-    causes: Counter[str] = Counter()
-    counts: Counter[tuple[bool, bool]] = Counter()
-    for d, truth, doubtful in drawn:
-        found = permitted(library, name, d.inputs, table)
-        sure = found.guaranteed
-        counts[d.family == "uniform", True] += int(sure.sum())
-        counts[d.family == "uniform", False] += int((~sure).sum())
-        for cause, lanes in found.histogram().items():
-            causes[cause.what] += lanes
-        for k, bound in enumerate(bounds):
-            if truth is None or (bound.targets and targets.get(table, "glsl") not in bound.targets):
-                continue
-            use = applies(bound, d.inputs, len(sure)) & sure & ~doubtful
-            if use.any():
-                ends = (found.low, found.high)
-                worst = max(float(measure.error(bound, end, truth)[use].max()) for end in ends)
-                errors[k] = max(errors[k] or 0.0, worst)
-    total = sum(counts.values())
+    found = permitted(library, name, drawn.sample.inputs, table)
+    sure, uniform = found.guaranteed, drawn.sample.uniform
+    target = TARGETS.get(table, "glsl")
+    errors: list[float | None] = []
+    for bound in library.bounds.get(name, ()):
+        use = sure & ~drawn.doubtful & applies(bound, drawn.sample.inputs, len(sure))
+        if drawn.truth is None or not use.any() or (bound.targets and target not in bound.targets):
+            errors.append(None)
+            continue
+        ends = [measure.error(bound, end, drawn.truth) for end in (found.low, found.high)]
+        errors.append(_rounded_up(max(float(e[use].max()) for e in ends)))
+    causes: dict[str, float] = {}
+    for cause, lanes in found.histogram().items():
+        causes[cause.what] = causes.get(cause.what, 0.0) + lanes / len(sure)
     return Guarantee(
-        _share(counts[True, True], counts[True, False]),
-        _share(counts[False, True], counts[False, False]),
-        [None if e is None else _rounded_up(e) for e in errors],
-        {what: float(f"{lanes / total:.2g}") for what, lanes in causes.most_common()},
+        _share(sure[uniform]),
+        _share(sure[~uniform]),
+        errors,
+        {what: float(f"{share:.2g}") for what, share in causes.items()},
     )
 
 
-def _share(sure: int, unsure: int) -> float:
+def _share(sure: npt.NDArray[np.bool_]) -> float:
     """A share to four places, 1 only if nothing is missing."""
-    return float(np.floor(1e4 * sure / max(sure + unsure, 1)) / 1e4)
+    return float(np.floor(1e4 * sure.sum() / max(len(sure), 1)) / 1e4)
 
 
 def _rounded_up(x: float) -> float:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from codegen.intervals import TABLES
 from codegen.library import Library
-from conformance.guarantees.survey import Guarantee, sample, survey
+from conformance.guarantees.survey import Guarantee, drawn_for, survey
 
 PATH = Path(__file__).with_name("guarantees.json")
 SHARE_TOLERANCE = 2e-3
@@ -24,7 +24,7 @@ def measured(library: Library, names: list[str] | None = None) -> Guarantees:
     """The guarantees of all public functions, or of some, under all tables."""
     found: Guarantees = {}
     for name in names or list(library.public):
-        drawn = sample(library, name)
+        drawn = drawn_for(library, name)
         found[name] = {table: survey(library, name, table, drawn) for table in TABLES}
     return found
 
