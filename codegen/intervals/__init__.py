@@ -8,11 +8,11 @@ What is assumed beside the tables:
   order        expressions are evaluated as written; only the sum inside `dot` may take any order
   once         one value is computed once, however often it is used
   fusing       a * b + c may have one rounding where the table says so
-  zero         sqrt(0) = 0 and 0 / y = 0, and quotients have their operands' sign: the ULP promises would allow
-               more near 0, but no driver is known to use it, and no length would be bounded otherwise
+  zero         sqrt(0) = 0 and 0 / y = 0, and quotients have their operands' sign: the ULP promises would
+               allow more near 0, but no driver is known to use it, and no length would be bounded otherwise
   flushing     below 2^-126 an input or a result may be 0; results there are not told apart otherwise
-  anything     overflow, NaN and results outside a promised range are "anything", with the cause; anything stays
-               anything through min, max and clamp, since NaN may be among it
+  anything     overflow, NaN and results outside a promised range are "anything", with the cause; anything
+               stays anything through min, max and clamp, since NaN may be among it
   powers of 2  at one, ULP is the larger of the two spacings around it
 """
 

@@ -28,10 +28,11 @@ from codegen.intervals import TABLES, Permitted, Table, load_table, permitted
 from codegen.intervals.accuracy import Absolute, Ulp
 from codegen.library import load_library
 from conformance.check.engine import draws
+from conformance.guarantees.sample import rows, together
 from conformance.unit.support.sources import library_of
 
 LIBRARY = load_library()
-UNIFORM, FAMILY, PRECISE = 1000, 80, 12
+UNIFORM, FAMILY, PRECISE = 1000, 80, 60
 """Random lanes, lanes of each family, and lanes in mpmath, per function."""
 DOUBLE_SLACK = 2.0**-32
 """Share of an interval's larger end by which float64's own rounding may leave it: 2^-52 times the
@@ -62,12 +63,6 @@ def inside(found: Permitted, value: Any) -> np.ndarray[Any, Any]:
     return replace(found, low=low, high=high).contains(value)
 
 
-def rows(inputs: Any, count: int) -> Any:
-    if isinstance(inputs, Mapping):
-        return {name: rows(value, count) for name, value in inputs.items()}
-    return inputs[:count]
-
-
 def as_double(value: Any) -> Any:
     """mpmath's numbers rounded to float64, which is far inside float32's grid."""
     if isinstance(value, Mapping):
@@ -77,37 +72,38 @@ def as_double(value: Any) -> Any:
 
 @pytest.mark.parametrize("name", LIBRARY.public)
 def test_interval_holds_the_evaluator(name: str) -> None:
-    for d in draws(LIBRARY.function(name), UNIFORM, FAMILY):
-        single = evaluate(LIBRARY, name, d.inputs)
-        for table in TABLES:
-            ok = permitted(LIBRARY, name, d.inputs, table, follow_forks=table == "wgsl").contains(single)
-            if not (name in EXTENDED and table.startswith("opencl")):
-                assert ok.all(), f"{table}, {d.family}, lane {np.flatnonzero(~ok)[0]}"
+    drawn = together(draws(LIBRARY.function(name), UNIFORM, FAMILY))
+    single = evaluate(LIBRARY, name, drawn.inputs)
+    for table in TABLES:
+        if name in EXTENDED and table.startswith("opencl"):
+            continue
+        ok = permitted(LIBRARY, name, drawn.inputs, table, follow_forks=table == "wgsl").contains(single)
+        told = f"{table}, {np.unique(drawn.family[~ok])} of {drawn.families}, lanes {np.flatnonzero(~ok)[:5]}"
+        assert ok.all(), told
 
 
 @pytest.mark.parametrize("name", LIBRARY.public)
 def test_interval_holds_exact_arithmetic(name: str) -> None:
     tables = [replace(load_table(t), rounding="either") for t in ("wgsl", "opencl")]
-    for d in draws(LIBRARY.function(name), UNIFORM // 2, FAMILY // 2):
-        double = evaluate(LIBRARY, name, d.inputs, "float64")
-        some = rows(d.inputs, PRECISE)
-        with mpmath.workdps(50), np.errstate(all="ignore"):
-            precise = as_double(evaluate(LIBRARY, name, some, "mpmath"))
-        for table in tables:
-            ok = inside(permitted(LIBRARY, name, d.inputs, table), double)
-            assert ok.all(), f"float64: {table.name}, {d.family}, lane {np.flatnonzero(~ok)[0]}"
-            ok = inside(permitted(LIBRARY, name, some, table), precise)
-            assert ok.all(), f"mpmath: {table.name}, {d.family}, lane {np.flatnonzero(~ok)[0]}"
+    drawn = together(draws(LIBRARY.function(name), UNIFORM, FAMILY))
+    double = evaluate(LIBRARY, name, drawn.inputs, "float64")
+    some = rows(drawn.inputs, np.arange(0, drawn.lanes, max(drawn.lanes // PRECISE, 1)))
+    with mpmath.workdps(50), np.errstate(all="ignore"):
+        precise = as_double(evaluate(LIBRARY, name, some, "mpmath"))
+    for table in tables:
+        for inputs, exact, what in ((drawn.inputs, double, "float64"), (some, precise, "mpmath")):
+            ok = inside(permitted(LIBRARY, name, inputs, table, follow_forks=table.name == "wgsl"), exact)
+            assert ok.all(), f"{what}, {table.name}, lanes {np.flatnonzero(~ok)[:5]}"
 
 
 @pytest.mark.parametrize("name", ["hammersley", "latlong_direction", "half_vector", "shell_strand_mask"])
 def test_following_forks_only_narrows(name: str) -> None:
-    for d in draws(LIBRARY.function(name), UNIFORM, FAMILY):
-        wide = permitted(LIBRARY, name, d.inputs, "wgsl", follow_forks=False)
-        narrow = permitted(LIBRARY, name, d.inputs, "wgsl")
-        assert (narrow.guaranteed >= wide.guaranteed).all()
-        assert wide.contains(narrow.low).all()
-        assert wide.contains(narrow.high).all()
+    drawn = together(draws(LIBRARY.function(name), UNIFORM, FAMILY))
+    wide = permitted(LIBRARY, name, drawn.inputs, "wgsl", follow_forks=False)
+    narrow = permitted(LIBRARY, name, drawn.inputs, "wgsl")
+    assert (narrow.guaranteed >= wide.guaranteed).all()
+    assert wide.contains(narrow.low).all()
+    assert wide.contains(narrow.high).all()
 
 
 TOO_TIGHT: dict[str, tuple[str, Ulp | Absolute]] = {
