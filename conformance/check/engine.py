@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -14,6 +15,7 @@ from codegen.bounds import Bound
 from codegen.evaluate import evaluate
 from codegen.execute import execute
 from codegen.ir.nodes import Function
+from codegen.kernels import kernel
 from codegen.library import Library
 from conformance import cases
 from conformance.check import measure, show
@@ -21,7 +23,7 @@ from conformance.check.features import applies
 from conformance.check.identity import Identity
 from conformance.check.result import BoundResult, Failure, FunctionResult
 from conformance.reference import PROPERTY_ONLY, ambiguous, reference_for
-from targets import open_runtime
+from targets import TARGETS, open_runtime
 
 UNIFORM_COUNT = 20_000
 """Random points per function where no other number is asked for."""
@@ -113,6 +115,8 @@ def check_function(
     """Check one function: every finite input inside its domain gives a finite result within its bounds."""
     function = library.function(name)
     result = FunctionResult(name, on.target, on.driver, backend=on.name or on.target)
+    result.source = library.select([name]).source_hash
+    result.emitted = emitted_hash(library, name, result.backend)
     bounds = [b for b in library.bounds.get(name, ()) if not b.targets or on.target in b.targets]
     started = time.perf_counter()
     if not bounds:
@@ -138,6 +142,13 @@ def check_function(
         _summarise(found, parts)
     result.seconds = time.perf_counter() - started
     return result
+
+
+def emitted_hash(library: Library, name: str, target: str) -> str:
+    """Hash of the program that a target is given for a function; empty for any other backend."""
+    if target not in TARGETS:
+        return ""
+    return hashlib.sha256(kernel(library, name, target).encode()).hexdigest()[:16]
 
 
 def find_reference(library: Library, function: Function) -> Callable[..., Any] | None:
@@ -181,7 +192,7 @@ def _check_draw(
     result.non_finite += int((~finite).sum())
     for lane in np.flatnonzero(~finite)[: MAX_FAILURES - len(result.failures)]:
         result.failures.append(
-            _failure(result, d, int(lane), "the result is not finite", got, expected, None, "")
+            _failure(result, d, int(lane), "the result is not finite", got, expected, None, "", function)
         )
     doubtful = ambiguous(function.name, d.inputs, function.base if function.kind == "variant" else None)
     result.ambiguous += int(doubtful.sum())
@@ -205,7 +216,7 @@ def _check_draw(
         for bad in order[: max(MAX_FAILURES - len(result.failures), 0)]:
             text = f"{bound.measure} {error[bad]:.4g} exceeds {bound.bound:.4g}"
             result.failures.append(
-                _failure(result, d, int(bad), "outside its bound", got, expected, bound, text)
+                _failure(result, d, int(bad), "outside its bound", got, expected, bound, text, function)
             )
     result.uncovered += int((~covered).sum())
 
@@ -226,6 +237,7 @@ def _failure(
     expected: Any,
     bound: Bound | None,
     text: str,
+    function: Function,
 ) -> Failure:
     field = bound.field if bound is not None else ""
     distances = []
@@ -244,4 +256,5 @@ def _failure(
         error=", ".join(filter(None, (text, *distances))),
         bound=bound.describe() if bound is not None else "finite input gives a finite result",
         origin=bound.origin if bound is not None else "the contract of every function",
+        words=cases.words(function, d.inputs, lane),
     )

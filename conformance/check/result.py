@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from conformance.check.identity import Identity
@@ -10,7 +11,10 @@ from conformance.check.identity import Identity
 
 @dataclass(frozen=True)
 class Failure:
-    """One lane that missed a bound, or gave a non-finite result."""
+    """One lane that missed a bound, or gave a non-finite result.
+
+    inputs  for people, decimal and hex; words: the same for machines, see conformance.cases.found
+    """
 
     identity: Identity
     driver: str
@@ -21,6 +25,7 @@ class Failure:
     error: str
     bound: str
     origin: str
+    words: str = ""
 
     def lines(self) -> list[str]:
         """The failure as lines of text; the last one replays it."""
@@ -57,6 +62,8 @@ class FunctionResult:
     backend  as a replay identity carries it: the target, or a driver with its mode
     stage    how far it came: emit, compile, execute (where it stopped), or judged
     known    the reason of a failure that was expected, see conformance.drivers.known
+    source   hash of the library's sources that the function needs
+    emitted  hash of the program that a target was given; empty for the evaluator and for drivers with a mode
     """
 
     function: str
@@ -73,6 +80,8 @@ class FunctionResult:
     bounds: list[BoundResult] = field(default_factory=list)
     failures: list[Failure] = field(default_factory=list)
     broken: str = ""
+    source: str = ""
+    emitted: str = ""
 
     @property
     def passed(self) -> bool:
@@ -99,5 +108,45 @@ class FunctionResult:
             "outside_every_bound": self.uncovered,
             "seconds": round(self.seconds, 3),
             "bounds": [vars(b) for b in self.bounds],
-            "failures": [{**vars(f), "identity": str(f.identity)} for f in self.failures],
+            "source": self.source,
+            "emitted": self.emitted,
+            "failures": [self._record(f) for f in self.failures],
         }
+
+    def _record(self, failure: Failure) -> dict[str, Any]:
+        """A failure with all that running it elsewhere needs."""
+        return {
+            **vars(failure),
+            "identity": str(failure.identity),
+            "function": self.function,
+            "target": self.target,
+            "backend": self.backend,
+            "seed": failure.identity.seed,
+            "source": self.source,
+            "emitted": self.emitted,
+        }
+
+    @staticmethod
+    def from_data(data: Mapping[str, Any]) -> FunctionResult:
+        """The result that `as_data` gave; raises KeyError or TypeError for anything else."""
+        failures = []
+        for record in data["failures"]:
+            own = {f.name: record[f.name] for f in fields(Failure)}
+            failures.append(Failure(**{**own, "identity": Identity.parse(record["identity"])}))
+        return FunctionResult(
+            function=data["function"],
+            target=data["target"],
+            driver=data["driver"],
+            backend=data["backend"],
+            known=data["known_failure"] or "",
+            lanes=data["lanes"],
+            non_finite=data["non_finite"],
+            ambiguous=data["ambiguous"],
+            uncovered=data["outside_every_bound"],
+            seconds=data["seconds"],
+            bounds=[BoundResult(**b) for b in data["bounds"]],
+            failures=failures,
+            broken=data["broken"] or "",
+            source=data["source"],
+            emitted=data["emitted"],
+        )

@@ -14,10 +14,12 @@ from codegen.backends import TARGETS
 from codegen.errors import UserError, unknown
 from codegen.files import write_bytes, write_text
 from codegen.library import VERSION, Library, load_library
-from conformance.check.engine import Backend, backend, check_function, draw, only_lane
-from conformance.check.identity import Identity
+from conformance.check.engine import Backend, backend, check_function
 from conformance.check.junit import junit_bytes
+from conformance.check.merge import merge as join_results
+from conformance.check.replay import cases_of
 from conformance.check.result import FunctionResult
+from conformance.check.shard import Shard
 from conformance.commands.check_drivers import check_drivers, replay_on_driver
 from targets import TargetUnavailable
 
@@ -38,7 +40,10 @@ CHECKABLE = (*TARGETS, "numpy")
 @click.option(
     "--junit", "junit_file", type=click.Path(path_type=Path), help="Write the results as JUnit XML."
 )
-@click.option("--replay", "replayed", help="Run one case again: the identity that a failure printed.")
+@click.option("--replay", "replayed", help="Run cases again: a printed identity, or a file of --json.")
+@click.option("--shard", default="1/1", help="Check a fixed share of the functions and targets only: 2/3.")
+@click.option("--merge", is_flag=True, help="Join the results in FILES instead of checking.")
+@click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 def command(
     names: tuple[str, ...],
     drivers: tuple[str, ...],
@@ -48,33 +53,37 @@ def command(
     json_file: Path | None,
     junit_file: Path | None,
     replayed: str | None,
+    shard: str,
+    merge: bool,
+    files: tuple[Path, ...],
 ) -> int:
     """Check every function on every driver of this machine against references and declared bounds."""
     library = load_library()
+    part = Shard.parse(shard)
+    if merge or files:
+        return run_merge(files, merge, json_file, junit_file)
     if replayed is not None:
-        return run_replay(library, Identity.parse(replayed))
+        return run_replay(library, replayed)
     wanted = [library.function(name).name for name in functions] or list(library.public)
     complaints: list[str] = []
     if drivers:
         if names:
             raise UserError("--target and --driver exclude each other: a driver has its target")
-        if record and functions:
-            raise UserError("--record keeps the results of all functions; leave out --function")
+        if record and (functions or part.of > 1):
+            raise UserError("--record keeps the results of all functions; leave out --function and --shard")
+        wanted = [name for name in wanted if part.holds(name, "driver")]
         results, missing, complaints = check_drivers(library, wanted, drivers, modes, record)
     elif modes or record:
         raise UserError("--mode and --record need --driver")
     else:
         backends, missing = open_backends(names)
-        results = run_checks(library, wanted, backends)
+        results = run_checks(library, wanted, backends, part)
     for sentence in missing:
         click.echo(f"skipped   {sentence}")
-    report(results, len(wanted))
+    report(results)
     for sentence in complaints:
         click.echo(f"FAILED    {sentence}")
-    if json_file is not None:
-        write_text(json_file, as_json(results, missing))
-    if junit_file is not None:
-        write_bytes(junit_file, junit_bytes(results, missing))
+    write_results(results, missing, part, json_file, junit_file)
     return 0 if all(r.accepted for r in results) and not complaints else 1
 
 
@@ -98,21 +107,23 @@ def open_backends(names: tuple[str, ...]) -> tuple[list[Backend], list[str]]:
     return found, missing
 
 
-def run_checks(library: Library, functions: list[str], backends: list[Backend]) -> list[FunctionResult]:
-    """All functions on all backends, with progress on a terminal."""
+def run_checks(
+    library: Library, functions: list[str], backends: list[Backend], part: Shard
+) -> list[FunctionResult]:
+    """The shard's functions on all backends, with progress on a terminal."""
+    pairs = [(on, name) for on in backends for name in functions if part.holds(name, on.target)]
     results = []
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not sys.stderr.isatty()) as progress:
-        task = progress.add_task("checking", total=len(functions) * len(backends))
-        for on in backends:
-            for name in functions:
-                progress.update(task, description=f"{on.target} {name}")
-                results.append(check_function(library, name, on))
-                progress.advance(task)
+        task = progress.add_task("checking", total=len(pairs))
+        for on, name in pairs:
+            progress.update(task, description=f"{on.target} {name}")
+            results.append(check_function(library, name, on))
+            progress.advance(task)
     return results
 
 
-def report(results: list[FunctionResult], functions: int) -> None:
+def report(results: list[FunctionResult]) -> None:
     """Failures in full, then one line per backend."""
     for r in results:
         if r.known:
@@ -130,29 +141,66 @@ def report(results: list[FunctionResult], functions: int) -> None:
         lanes = sum(r.lanes for r in own)
         bad = sum(r.non_finite for r in own)
         click.echo(
-            f"{name.ljust(width)} {passed} of {functions} functions within their bounds, "
+            f"{name.ljust(width)} {passed} of {len(own)} functions within their bounds, "
             f"{f'{known} known failures, ' if known else ''}{lanes} inputs, "
             f"{bad} non-finite results, {sum(r.seconds for r in own):.1f} s  ({own[0].driver})"
         )
 
 
-def as_json(results: list[FunctionResult], missing: list[str]) -> str:
+def write_results(
+    results: list[FunctionResult],
+    missing: list[str],
+    part: Shard,
+    json_file: Path | None,
+    junit_file: Path | None,
+) -> None:
+    """Write the files that were asked for."""
+    if json_file is not None:
+        write_text(json_file, as_json(results, missing, part))
+    if junit_file is not None:
+        write_bytes(junit_file, junit_bytes(results, missing))
+
+
+def as_json(results: list[FunctionResult], missing: list[str], part: Shard) -> str:
     """The machine-readable result."""
-    data = {"version": VERSION, "skipped": missing, "results": [r.as_data() for r in results]}
+    data = {
+        "version": VERSION,
+        "source": load_library().select().source_hash,
+        "shard": str(part),
+        "skipped": missing,
+        "results": [r.as_data() for r in results],
+    }
     return json.dumps(data, indent=1) + "\n"
 
 
-def run_replay(library: Library, identity: Identity) -> int:
-    """Draw one input again, run it, and print what came out and what was expected."""
-    if "+" in identity.target:
-        return show_replay(replay_on_driver(library, identity))
-    if identity.target not in CHECKABLE:
-        raise unknown("target", identity.target, CHECKABLE)
-    function = library.function(identity.function)
-    (on,), _ = open_backends((identity.target,))
-    whole = draw(function, identity.family, identity.count, identity.seed)
-    result = check_function(library, function.name, on, [only_lane(whole, identity.lane)])
-    return show_replay(result)
+def run_merge(files: tuple[Path, ...], asked: bool, json_file: Path | None, junit_file: Path | None) -> int:
+    """Join results, report them as one, and give the exit status of the whole."""
+    if not asked:
+        raise UserError(f"vair check takes no files without --merge: {files[0]}")
+    if not files:
+        raise UserError("--merge needs the files that vair check --json wrote")
+    merged = join_results(files)
+    report(merged.results)
+    for shard in merged.missing:
+        click.echo(f"MISSING   shard {shard}")
+    write_results(merged.results, merged.skipped, Shard(), json_file, junit_file)
+    return 0 if merged.passed else 1
+
+
+def run_replay(library: Library, text: str) -> int:
+    """Run recorded cases again, and print what came out and what was expected."""
+    status = 0
+    for case in cases_of(library, text):
+        for remark in case.remarks:
+            click.echo(remark)
+        if case.identity is not None and "+" in case.target:
+            status |= show_replay(replay_on_driver(library, case.identity))
+            continue
+        if case.target not in CHECKABLE:
+            raise unknown("target", case.target, CHECKABLE)
+        (on,), _ = open_backends((case.target,))
+        status |= show_replay(check_function(library, case.function, on, [case.draw()]))
+    return status
 
 
 def show_replay(result: FunctionResult) -> int:

@@ -1,0 +1,73 @@
+"""Results of several runs joined into one: the shards of one check, or the same check on several machines."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from codegen.errors import UserError
+from conformance.check.result import FunctionResult
+from conformance.check.shard import Shard
+
+
+@dataclass(frozen=True)
+class Merged:
+    """All results, the targets that were skipped, and what is missing for a verdict."""
+
+    results: list[FunctionResult]
+    skipped: list[str]
+    missing: list[str]
+
+    @property
+    def passed(self) -> bool:
+        return not self.missing and all(r.accepted for r in self.results)
+
+
+def merge(paths: Iterable[Path]) -> Merged:
+    """The results in these files, each function once per target and driver; a failed one stays.
+
+    errors  UserError for a file that cannot be read, is no result of a check, or has other sources
+    """
+    files = {path: read(path) for path in paths}
+    sources = {data.get("source", "") for data in files.values()}
+    if len(sources) > 1:
+        raise UserError(f"{', '.join(map(str, files))}: the results are of different sources; check again")
+    found: dict[tuple[str, str, str], FunctionResult] = {}
+    shards: set[Shard] = set()
+    skipped: dict[str, None] = {}
+    for path, data in files.items():
+        shards.add(Shard.parse(data.get("shard") or "1/1"))
+        skipped.update(dict.fromkeys(data.get("skipped", ())))
+        for entry in data["results"]:
+            try:
+                result = FunctionResult.from_data(entry)
+            except (KeyError, TypeError) as e:
+                raise UserError(f"{path}: a result lacks or misspells {e}") from None
+            key = (result.function, result.backend, result.driver)
+            if key not in found or found[key].accepted:
+                found[key] = result
+    return Merged(list(found.values()), list(skipped), lacking(shards))
+
+
+def lacking(shards: set[Shard]) -> list[str]:
+    """The shards that nobody brought: all of one division have to be there."""
+    divisions = {shard.of for shard in shards}
+    return [
+        str(Shard(k, of)) for of in sorted(divisions) for k in range(1, of + 1) if Shard(k, of) not in shards
+    ]
+
+
+def read(path: Path) -> dict[str, Any]:
+    """The data of a result file; raises UserError for anything else."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as e:
+        raise UserError(f"{path}: {e.strerror}") from None
+    except ValueError:
+        raise UserError(f"{path} is not JSON") from None
+    if not isinstance(data, dict) or not isinstance(data.get("results"), list):
+        raise UserError(f"{path} is no result of vair check --json")
+    return data

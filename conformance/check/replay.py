@@ -1,0 +1,85 @@
+"""Cases to run again: an identity, which draws the input anew, or a file of records.
+
+A file may be a result of `vair check --json`, of which every failure is run, one record, or a list of them.
+Records hold the words of the inputs, so they outlive changes of the families that inputs are drawn from.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from codegen.errors import UserError
+from codegen.library import Library
+from conformance.cases import found
+from conformance.check.engine import Draw, draw, only_lane
+from conformance.check.identity import Identity
+
+RECORDED = "recorded"
+"""Family of an input that a record brings itself."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One input of one function on one target (or driver with its mode).
+
+    draw      gives the input
+    identity  draws it on a driver
+    remarks   what to say before it is run
+    """
+
+    function: str
+    target: str
+    draw: Callable[[], Draw]
+    identity: Identity | None = None
+    remarks: tuple[str, ...] = ()
+
+
+def cases_of(library: Library, text: str) -> list[Case]:
+    """The cases that an identity or a file names; raises UserError for anything else."""
+    path = Path(text)
+    if text and path.is_file():
+        return [from_record(library, path, record) for record in records(path)]
+    identity = Identity.parse(text)
+    function = library.function(identity.function)
+
+    def again() -> Draw:
+        whole = draw(function, identity.family, identity.count, identity.seed)
+        if identity.lane >= whole.count:
+            raise UserError(f'replay identity "{text}" names lane {identity.lane} of {whole.count}')
+        return only_lane(whole, identity.lane)
+
+    return [Case(identity.function, identity.target, again, identity)]
+
+
+def records(path: Path) -> list[Mapping[str, Any]]:
+    """The records in a file; raises UserError where there are none."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise UserError(f"{path} is not JSON") from None
+    if isinstance(data, dict) and "results" in data:
+        data = [failure for result in data["results"] for failure in result["failures"]]
+    listed = data if isinstance(data, list) else [data]
+    if not listed or not all(isinstance(record, dict) and "words" in record for record in listed):
+        raise UserError(f"{path} holds no failure to replay")
+    return listed
+
+
+def from_record(library: Library, path: Path, record: Mapping[str, Any]) -> Case:
+    """A record as a case; raises UserError where it does not fit the function any more."""
+    try:
+        function = library.function(record["function"])
+        inputs = found.inputs_of(function, [record["words"]])
+        recorded = Draw(RECORDED, 1, int(record["seed"]), inputs)
+        target = str(record.get("backend") or record["target"])
+        identity = Identity.parse(record["identity"])
+    except (KeyError, ValueError) as e:
+        raise UserError(f"{path}: a record does not fit: {e}") from None
+    remarks = [f"recorded  {record.get('got', '')} on {record.get('driver', '')}"]
+    if record.get("source") != library.select([function.name]).source_hash:
+        remarks.append("          the sources have changed since")
+    return Case(function.name, target, lambda: recorded, identity, tuple(remarks))
