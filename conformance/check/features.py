@@ -30,12 +30,6 @@ def lookup(inputs: Mapping[str, Any], path: str) -> Array:
     return np.asarray(value, np.float64)
 
 
-def _unit(x: Array) -> Array:
-    largest = np.maximum(np.abs(x).max(axis=-1, keepdims=True), 1e-300)
-    x = x / largest
-    return np.asarray(x / np.maximum(np.linalg.norm(x, axis=-1, keepdims=True), 1e-300))
-
-
 def feature(inputs: Mapping[str, Any], text: str) -> Array:
     """The feature's value per lane. angle(x, y) is the angle between x and the line of y, in [0, pi/2]."""
     call = _CALL.match(text)
@@ -48,9 +42,9 @@ def feature(inputs: Mapping[str, Any], text: str) -> Array:
     b = lookup(inputs, second)
     if kind == "dot":
         return np.asarray(np.sum(a * b, axis=-1))
-    a, b = _unit(a), _unit(b)
-    sine = np.linalg.norm(np.cross(a - b, a + b), axis=-1) / 2.0
-    return np.asarray(np.arctan2(sine, np.abs(np.sum(a * b, axis=-1))))
+    # Products of float32 numbers are exact in float64, so that a plain cross product keeps small angles.
+    area = np.linalg.norm(np.cross(a, b), axis=-1)
+    return np.asarray(np.arctan2(area, np.abs(np.sum(a * b, axis=-1))))
 
 
 def applies(bound: Bound, inputs: Mapping[str, Any], count: int) -> npt.NDArray[np.bool_]:
