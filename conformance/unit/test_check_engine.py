@@ -1,0 +1,325 @@
+"""The verdict: what passes, what fails, and that a failure says all that replaying it needs.
+
+Plan. A one-function library with bounds of its own, a backend and a reference that return given numbers, so
+that every count of the result is known beforehand.
+  judged     the bound itself still passes; anything above it, NaN among it, fails; other lanes stay unjudged
+  draws      several draws add up: no tolerance carries over, the worst lane is the worst of all
+  exempt     ambiguous lanes and lanes outside every bound are counted, yet must be finite
+  figures    maximum, p99.9, median and number of lanes of each bound
+  failures   at most MAX_FAILURES in full, worst first; each with identity, inputs, error, bound, origin
+  refused    no bound, no reference
+"""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from codegen.library import Library, load_library
+from conformance import cases
+from conformance.check import engine
+from conformance.check.engine import Backend, Draw, check_function
+from conformance.check.result import FunctionResult
+from conformance.unit.support.sources import library_of
+
+SOURCE = "def probe(x: X) -> f32:\n    return x\n"
+BOUND = '[[probe]]\nmeasure = "absolute"\nbound = 0.5\ndomain = "{}"\norigin = "{}"\n{}\n'
+ALL = BOUND.format("everywhere", "derived here", "")
+Floats = list[float]
+
+
+def library_with(folder: Path, bounds: str, source: str = SOURCE) -> Library:
+    library = library_of(folder, source)
+    (folder / "numeric/bounds.toml").write_text(bounds, encoding="utf-8")
+    return library
+
+
+@pytest.fixture
+def check(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., FunctionResult]:
+    """check(bounds, draws): the verdict where every draw lists (input, result, expected) lane by lane."""
+
+    def run(
+        bounds: str,
+        *draws: list[tuple[float, float, float]],
+        target: str = "numpy",
+        doubtful: Callable[[Any], Any] | None = None,
+    ) -> FunctionResult:
+        library = library_with(tmp_path, bounds)
+        tables = [np.array(d, np.float64).T for d in draws]
+        made = [
+            Draw(f"draw{k}", len(t[0]), 7 + k, {"x": t[0].astype(np.float32)}) for k, t in enumerate(tables)
+        ]
+        results = iter([t[1].astype(np.float32) for t in tables])
+        wanted = iter([t[2] for t in tables])
+        monkeypatch.setattr(engine, "find_reference", lambda *_: lambda x: next(wanted))
+        if doubtful is not None:
+            monkeypatch.setattr(engine, "ambiguous", lambda name, inputs, base: doubtful(inputs["x"]))
+        on = Backend(target, "a driver", lambda *_: next(results))
+        return check_function(library, "probe", on, made)
+
+    return run
+
+
+Check = Callable[..., FunctionResult]
+
+
+def test_bound_itself_passes_and_more_fails(check: Check) -> None:
+    result = check(ALL, [(0, 1.5, 1), (1, 0.5, 1), (2, 1, 1)])
+    assert result.passed
+    assert not result.failures
+    (found,) = result.bounds
+    assert (found.measured, found.lanes, found.failures, found.limit) == (0.5, 3, 0, 0.5)
+
+    result = check(ALL, [(0, 1.5, 1), (1, 1, 1), (2, 1.5001, 1), (3, 0.25, 1)])
+    assert not result.passed
+    assert [f.identity.lane for f in result.failures] == [3, 2]
+    assert result.bounds[0].failures == 2
+
+
+def test_expected_nan_fails(check: Check) -> None:
+    result = check(ALL, [(0, 1, np.nan), (1, 1, 1)])
+    assert [f.identity.lane for f in result.failures] == [0]
+
+
+def test_figures_are_over_all_draws(check: Check) -> None:
+    first = [(k, k / 4096, 0.0) for k in range(1000)]
+    result = check(ALL, first, [(5000, 0.375, 0.0)], [(7000, 0.25, 0.0)])
+    (found,) = result.bounds
+    errors = [k / 4096 for k in range(1000)] + [0.375, 0.25]
+    assert found.lanes == result.lanes == 1002
+    assert found.measured == 0.375
+    assert found.worst == "x = 5000 [459c4000]"
+    assert found.median == pytest.approx(float(np.median(errors)), rel=1e-15)
+    assert found.p999 == pytest.approx(float(np.quantile(errors, 0.999)), rel=1e-15)
+    assert found.bound == "absolute <= 0.5: everywhere"
+    assert result.seconds > 0.0
+    assert (result.function, result.target, result.driver) == ("probe", "numpy", "a driver")
+
+
+def test_worst_lane_is_kept_even_where_all_is_exact(check: Check) -> None:
+    result = check(ALL, [(3, 1, 1)], [(4, 1, 1)])
+    assert result.bounds[0].worst.startswith("x = 3 ")
+    assert result.bounds[0].measured == 0.0
+
+
+def test_no_tolerance_carries_over_to_the_next_draw(check: Check) -> None:
+    """The same wrong lane fails in the tenth draw as in the first, and after large permitted errors."""
+    good, bad = [(0, 0.4375, 0.0)], [(1, 0.625, 0.0)]
+    assert not check(ALL, *[good] * 9, bad).passed
+    assert not check(ALL, bad, *[good] * 9).passed
+    assert check(ALL, *[good] * 10).passed
+    result = check(ALL, *[bad] * 3)
+    assert [f.identity.family for f in result.failures] == ["draw0", "draw1", "draw2"]
+    assert result.bounds[0].failures == 3
+
+
+def test_result_that_is_not_finite_fails_everywhere(check: Check) -> None:
+    inside = BOUND.format("positive", "derived", "where = { x = [0, 9] }")
+    result = check(inside, [(1, np.nan, 1), (-1, np.inf, 1), (2, 1, 1), (3, -np.inf, 1)])
+    assert not result.passed
+    assert result.non_finite == 3
+    assert [f.identity.lane for f in result.failures] == [0, 1, 3]
+    assert {f.reason for f in result.failures} == {"the result is not finite"}
+    assert {f.origin for f in result.failures} == {"the contract of every function"}
+    assert {f.bound for f in result.failures} == {"finite input gives a finite result"}
+    assert result.bounds[0].lanes == 1
+
+
+def test_ambiguous_lanes_are_exempt_but_must_be_finite(check: Check) -> None:
+    result = check(ALL, [(1, 99, 1), (2, 1, 1)], doubtful=lambda x: x == 1)
+    assert result.passed
+    assert (result.ambiguous, result.uncovered, result.bounds[0].lanes) == (1, 0, 1)
+    assert not check(ALL, [(1, np.nan, 1), (2, 1, 1)], doubtful=lambda x: x == 1).passed
+
+
+def test_lanes_outside_every_bound_are_counted(check: Check) -> None:
+    low = BOUND.format("low", "derived", "where = { x = [0, 1] }")
+    high = BOUND.format("high", "derived", "where = { x = [3, 4] }")
+    lanes = [(0, 9, 0), (0.5, 0, 0), (2, 9, 0), (5, 9, 0), (3, 0.25, 0), (4, 0.125, 0)]
+    result = check(low + high, lanes)
+    assert [f.identity.lane for f in result.failures] == [0]
+    assert result.uncovered == 2
+    assert [b.lanes for b in result.bounds] == [2, 2]
+    assert [b.measured for b in result.bounds] == [9.0, 0.25]
+    assert [b.failures for b in result.bounds] == [1, 0]
+    again = check(low + high, lanes, lanes, doubtful=lambda x: x == 2)
+    assert (again.uncovered, again.ambiguous, again.lanes) == (2, 2, 12)
+
+
+def test_bound_without_a_lane_stays_empty(check: Check) -> None:
+    result = check(ALL + BOUND.format("nowhere", "derived", "where = { x = [50, 60] }"), [(0, 0, 0)])
+    assert result.passed
+    assert (result.bounds[1].lanes, result.bounds[1].worst) == (0, "")
+
+
+def test_overlapping_bounds_are_judged_each(check: Check) -> None:
+    tight = BOUND.format("tight", "derived", "where = { x = [0, 1] }").replace("0.5", "0.125")
+    result = check(ALL + tight, [(0, 0.25, 0), (2, 0.25, 0)])
+    assert [b.failures for b in result.bounds] == [0, 1]
+    assert [f.bound for f in result.failures] == ["absolute <= 0.125: tight"]
+
+
+def test_bounds_of_other_targets_are_left_out(check: Check) -> None:
+    mine = ALL.replace("0.5", "4.0") + 'targets = ["glsl", "opencl"]\n'
+    other = ALL + 'targets = ["wgsl"]\n'
+    lanes = [(0, 2, 0)]
+    assert check(mine + other, lanes, target="opencl").passed
+    assert not check(mine + other, lanes, target="wgsl").passed
+    assert "declares no error bound for numpy" in check(mine + other, lanes).broken
+
+
+def test_failures_are_reported_worst_first_and_counted_beyond_the_limit(check: Check) -> None:
+    lanes = [(k, k, 0.0) for k in range(10)]
+    result = check(ALL, lanes, lanes)
+    assert [f.identity.lane for f in result.failures] == [9, 8, 7, 6, 5]
+    assert engine.MAX_FAILURES == 5
+    assert result.bounds[0].failures == 18
+    mixed = check(ALL, [(k, np.nan, 0.0) for k in range(3)], lanes)
+    assert [(f.identity.family, f.identity.lane) for f in mixed.failures] == [
+        ("draw0", 0),
+        ("draw0", 1),
+        ("draw0", 2),
+        ("draw1", 9),
+        ("draw1", 8),
+    ]
+    many = check(ALL, lanes, [(k, np.nan, 0.0) for k in range(3)])
+    assert len(many.failures) == 5
+    assert many.non_finite == 3
+
+
+def test_failure_says_what_replaying_needs(check: Check) -> None:
+    result = check(ALL, [(0, 0, 0), (0.1, 3, 1)])
+    (failure,) = result.failures
+    assert str(failure.identity) == "probe/numpy/draw0/2/7/1"
+    assert failure.lines() == [
+        "probe on a driver: outside its bound",
+        "  inputs    x = 0.100000001 [3dcccccd]",
+        "  got       3 [40400000]",
+        "  expected  1",
+        f"  error     absolute 2 exceeds 0.5, {2.0**24:.4g} ULP",
+        "  bound     absolute <= 0.5: everywhere",
+        "  origin    derived here",
+        "  replay    vair check --replay probe/numpy/draw0/2/7/1",
+    ]
+    data = result.as_data()
+    assert (data["passed"], data["lanes"], data["broken"]) == (False, 2, None)
+    assert data["failures"][0]["identity"] == "probe/numpy/draw0/2/7/1"
+
+
+PAIR = """
+@struct
+class Pair:
+    \"\"\"Two.
+
+    low   first
+    high  second
+    \"\"\"
+
+    low: X
+    high: V
+
+def probe(x: X) -> Pair:
+    return Pair(x, vec3(x))
+"""
+
+
+def test_struct_failure_shows_the_field_of_the_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    library = library_with(tmp_path, ALL + 'field = "high"\n', PAIR)
+    got = {"low": np.float32([9, 9]), "high": np.float32([[0, 0, 0], [0, 1, 0]])}
+    expected = {"low": np.zeros(2), "high": np.zeros((2, 3))}
+    monkeypatch.setattr(engine, "find_reference", lambda *_: lambda x: expected)
+    on = Backend("numpy", "a driver", lambda *_: got)
+    (failure,) = check_function(library, "probe", on, [Draw("d", 2, 0, {"x": np.float32([1, 2])})]).failures
+    assert failure.identity.lane == 1
+    assert "high " in failure.error
+    assert "low" not in failure.error
+    assert failure.bound.startswith("high: ")
+    assert failure.got == "{low: 9 [41100000], high: (0, 1, 0) [00000000 3f800000 00000000]}"
+
+
+def test_function_without_reference_is_broken(tmp_path: Path) -> None:
+    result = check_function(library_with(tmp_path, ALL), "probe", engine.backend("numpy"), [])
+    assert not result.passed
+    assert result.broken == "probe has no reference"
+
+
+def test_function_without_bound_is_broken(tmp_path: Path) -> None:
+    result = check_function(library_of(tmp_path, SOURCE), "probe", engine.backend("numpy"), [])
+    assert not result.passed
+    assert result.broken == "probe declares no error bound for numpy"
+
+
+def test_reference_is_the_functions_own_or_its_bases() -> None:
+    library = load_library()
+    references = {f.name: engine.find_reference(library, f) for f in library.functions.values()}
+    assert references["sin_angle_cosine"] is references["sin_angle"] is not None
+    assert references["strand_cosine_banks_printed"] is not references["strand_cosine"]
+
+
+def test_function_that_no_formula_fixes_is_held_against_the_evaluator() -> None:
+    library = load_library()
+    (name,) = engine.PROPERTY_ONLY
+    inputs = engine.draw(library.function(name), "uniform", 50, 1).inputs
+    reference = engine.find_reference(library, library.function(name))
+    assert reference is not None
+    same = reference(*inputs.values())
+    assert np.array_equal(same, engine.backend("numpy").run(library, name, inputs))
+
+
+def test_reference_gets_the_exact_inputs_widened() -> None:
+    seen: list[Any] = []
+    inputs: dict[str, Any] = {
+        "x": np.float32([0.1]),
+        "n": np.uint32([7]),
+        "s": {"y": np.float32([0.2]), "z": np.float32([[1, 2, 3]])},
+    }
+    engine.expected_of(lambda *values: seen.extend(values), inputs)
+    assert [v.dtype for v in seen[:2]] == [np.float64, np.uint32]
+    assert seen[0][0] == float(np.float32(0.1))
+    assert {k: v.dtype for k, v in seen[2].items()} == {"y": np.float64, "z": np.float64}
+
+
+def columns(inputs: Mapping[str, Any]) -> list[Any]:
+    return [c for v in inputs.values() for c in (columns(v) if isinstance(v, Mapping) else [v])]
+
+
+@pytest.mark.parametrize("name", ["sin_angle", "to_local", "bessel_i0e"])
+def test_draws_take_every_family_and_can_be_repeated(name: str) -> None:
+    function = load_library().function(name)
+    found = list(engine.draws(function, 30, 20))
+    families = [d.family for d in found if d.family != cases.WORST]
+    assert families == ["uniform", *cases.families_for(function.parameters)]
+    assert (cases.WORST in [d.family for d in found]) == cases.has_worst(function)
+    assert len(set(families)) > 2
+    for d in found:
+        again = engine.draw(function, d.family, d.count, d.seed)
+        assert all(map(np.array_equal, columns(again.inputs), columns(d.inputs)))
+        assert {len(c) for c in columns(d.inputs)} == {d.count}
+    assert [d.count for d in found if d.family in ("uniform", "domain_ends")] == [30, 20]
+    assert {d.seed for d in found} == {engine.SEED}
+
+
+def test_check_draws_for_itself() -> None:
+    result = check_function(load_library(), "half_vector", engine.backend("numpy"))
+    assert result.passed
+    assert result.target == "numpy"
+    assert "numpy" in result.driver
+    assert result.lanes >= engine.UNIFORM_COUNT
+
+
+def test_backend_runs_a_target_and_names_its_driver(monkeypatch: pytest.MonkeyPatch) -> None:
+    runtime = SimpleNamespace(device=SimpleNamespace(api="an API", driver="a driver 1.2", device="a device"))
+    monkeypatch.setattr(engine, "open_runtime", {"glsl": runtime}.__getitem__)
+    monkeypatch.setattr(engine, "execute", lambda *arguments: arguments)
+    found = engine.backend("glsl")
+    assert (found.target, found.driver) == ("glsl", "an API; a driver 1.2; a device")
+    library, inputs = load_library(), {"x": np.float32([1])}
+    assert found.run(library, "probe", inputs) == (library, "probe", inputs, runtime)
+
+
+def test_evaluator_is_a_backend_without_a_driver() -> None:
+    found = engine.backend("numpy")
+    assert (found.target, found.driver) == ("numpy", f"numpy {np.__version__}, float32 op by op")
