@@ -13,14 +13,14 @@ import numpy as np
 
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
-from codegen.evaluate.arrays import Value
+from codegen.evaluate.arrays import Array, Value
 from codegen.intervals import Permitted
 from codegen.ir.verify import MalformedIRError, verify_selection
 from codegen.library import Library
 from conformance.fuzz import python_oracle
 from conformance.fuzz.case import Case, draw_inputs, make_case
 from conformance.fuzz.source import write
-from conformance.programs import batch, judge
+from conformance.programs import batch, judge, rearranged
 from targets import BuildFailed, Runtime
 
 LANES = 32
@@ -60,6 +60,7 @@ class Tally:
     results: Counter[str] = field(default_factory=Counter)
     open: Counter[str] = field(default_factory=Counter)
     exact: Counter[str] = field(default_factory=Counter)
+    rearranged: Counter[str] = field(default_factory=Counter)
     findings: list[Finding] = field(default_factory=list)
 
     def lines(self) -> list[str]:
@@ -68,7 +69,8 @@ class Tally:
         for backend, count in self.results.items():
             share, exact = self.open[backend] / max(count, 1), self.exact[backend] / max(count, 1)
             lines.append(
-                f"  {backend:8} {count} results judged by interval; {share:.1%} unbounded, {exact:.1%} exact"
+                f"  {backend:8} {count} results judged; {share:.1%} unbounded, {exact:.1%} exact, "
+                f"{self.rearranged[backend]} rearranged"
             )
         return lines
 
@@ -96,7 +98,8 @@ def run_batch(cases: Sequence[Case], runtimes: Sequence[Runtime], tally: Tally) 
             key = case, table
             if key not in allowed:
                 allowed[key] = judge.intervals(library, case.entry, jobs[case].inputs, backend)
-            _judge(tally, case, backend, allowed[key], value, lanes)
+            verdict = _verdict(library, jobs[case], backend, allowed[key], value, lanes)
+            _judge(tally, case, backend, verdict, value, lanes)
 
         for case in sound:
             inputs = dict(jobs[case].inputs)
@@ -142,16 +145,41 @@ def _on_device(
     return list(zip(jobs, values, strict=True))
 
 
-def _judge(
-    tally: Tally, case: Case, backend: str, allowed: Permitted, value: Value, lanes: Sequence[int] | None
-) -> None:
+@dataclass(frozen=True)
+class Judged:
+    """Intervals of some lanes, which lanes are wrong, and which are explained by rearrangement."""
+
+    allowed: Permitted
+    wrong: Array
+    rearranged: Array
+
+
+def _verdict(
+    library: Library,
+    job: batch.Job,
+    backend: str,
+    allowed: Permitted,
+    value: Value,
+    lanes: Sequence[int] | None,
+) -> Judged:
     if lanes is not None:
         allowed = select(allowed, lanes)
-    verdict = judge.judge(allowed, value)
-    tally.results[backend] += len(verdict.wrong)
-    tally.open[backend] += int(verdict.open.sum())
-    tally.exact[backend] += int((~verdict.open & (judge.relative_width(allowed) == 0.0)).sum())
-    bad = np.flatnonzero(verdict.wrong)
+    wrong = judge.judge(allowed, value).wrong
+    why = np.zeros_like(wrong)
+    if wrong.any() and lanes is None:
+        why = wrong & rearranged.explained(library, job.name, job.inputs, backend, value)
+    return Judged(allowed, wrong & ~why, why)
+
+
+def _judge(
+    tally: Tally, case: Case, backend: str, judged: Judged, value: Value, lanes: Sequence[int] | None
+) -> None:
+    allowed = judged.allowed
+    tally.results[backend] += len(judged.wrong)
+    tally.open[backend] += int((~allowed.guaranteed).sum())
+    tally.exact[backend] += int((allowed.guaranteed & (judge.relative_width(allowed) == 0.0)).sum())
+    tally.rearranged[backend] += int(judged.rearranged.sum())
+    bad = np.flatnonzero(judged.wrong)
     if len(bad):
         k = int(bad[0])
         lane = k if lanes is None else lanes[k]

@@ -1,0 +1,106 @@
+"""Programs and inputs that must agree do agree on every target.
+
+Plan. A pair is two calls whose results are related by arithmetic, not by a reference.
+  inputs     l and v exchanged, directions reversed, turned and mirrored, powers of two, colours permuted:
+             conformance/metamorphic/relations.toml names the functions
+  programs   a function and its rewriting: + 0 and * 1 read at run time, calls inlined or not, loops split,
+             vectors by component, literals read at run time, statements and operands in another order, parts
+             named or written out, branches exchanged, guarded or made of conditional expressions; subjects
+             are library functions and random programs, which have loops
+Each result must lie in its own interval, both within the width of their intervals' union, intervals of one
+real number must meet, and both sides must mean the same in float64. Unbounded pairs are counted, not failed,
+and so are results that only a rearrangement of sums explains. A damaged rewriting is found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from codegen.ir import nodes as ir
+from codegen.ir.types import F32
+from codegen.ir.verify import verify_selection
+from codegen.library import Library, load_library
+from conformance.fuzz.choices import Choice
+from conformance.metamorphic import inputs, source
+from conformance.metamorphic.engine import Report, run_pairs
+from conformance.metamorphic.pairs import Pair, draw, source_pair
+from conformance.metamorphic.plan import input_pairs, library_pairs, program_pairs, random_programs
+from conformance.metamorphic.relation import Changed, SourceRelation
+from conformance.metamorphic.source.tools import changed_body
+from conformance.programs.extended import ExtendedLibrary
+from targets import TimedRuntime
+
+LIBRARY = load_library()
+LANES, NIGHTLY_LANES = 32, 256
+EACH = 2
+"""Functions and programs for each relation in a normal run."""
+PROGRAMS, NIGHTLY_PROGRAMS = 30, 200
+LEAST_RELATIONS = 12
+LEAST_NIGHTLY = 100_000
+
+
+def check(library: Library, pairs: Iterable[Pair], runtime: TimedRuntime, lanes: int) -> Report:
+    report = run_pairs(library, pairs, [runtime], lanes)
+    table = "\n".join(report.lines())
+    print(table)
+    assert not report.failures, "\n".join([table, *report.failures[:5]])
+    return report
+
+
+def test_related_inputs_agree(runtime: TimedRuntime) -> None:
+    report = check(LIBRARY, input_pairs(LIBRARY, LANES, EACH), runtime, LANES)
+    assert set(report.counts) == {r.name for r in inputs.RELATIONS}
+
+
+def test_rewritten_functions_agree(runtime: TimedRuntime) -> None:
+    check(LIBRARY, library_pairs(LIBRARY, LANES, EACH), runtime, LANES)
+
+
+def test_rewritten_programs_agree(runtime: TimedRuntime, tmp_path: Path) -> None:
+    library, cases = random_programs(tmp_path, PROGRAMS)
+    report = check(library, program_pairs(library, cases, LANES, EACH), runtime, LANES)
+    assert len(report.counts) >= LEAST_RELATIONS
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(2 * 3600)
+def test_all_related_pairs_agree(runtime: TimedRuntime, tmp_path: Path) -> None:
+    library, cases = random_programs(tmp_path, NIGHTLY_PROGRAMS)
+    n = NIGHTLY_LANES
+    reports = [
+        check(LIBRARY, input_pairs(LIBRARY, n, None), runtime, n),
+        check(LIBRARY, library_pairs(LIBRARY, n, None), runtime, n),
+        check(library, program_pairs(library, cases, n, None), runtime, n),
+    ]
+    assert sum(r.pairs for r in reports) >= LEAST_NIGHTLY
+
+
+def test_every_rewriting_makes_well_formed_programs(tmp_path: Path) -> None:
+    library, cases = random_programs(tmp_path, PROGRAMS)
+    pairs = [*library_pairs(LIBRARY, 4, None), *program_pairs(library, cases, 4, None)]
+    for pair in pairs:
+        base = library if pair.subject.startswith("case_") else LIBRARY
+        extended = ExtendedLibrary(base, {f.name: f for f in pair.added})
+        verify_selection(extended.select([pair.second.name]).functions)
+    assert {p.relation for p in pairs} == {r.name for r in source.RELATIONS}
+
+
+def damaged(function: ir.Function, library: Library, choice: Choice) -> Changed | None:
+    """A 'rewriting' that forgets a product's first factor."""
+    changed = changed_body(function, lambda e: e.right if isinstance(e, ir.Binary) and e.op == "*" else e)
+    return None if changed is None else Changed(changed)
+
+
+def test_a_wrong_rewriting_is_found(runtime: TimedRuntime) -> None:
+    relation = SourceRelation("damaged", "drops a factor", damaged)
+    function = LIBRARY.function("coat_transmittance")
+    pair = source_pair(relation, function, LIBRARY, partial(draw, function, LANES, 1), LANES)
+    assert pair is not None
+    assert function.returns == F32
+    failures = run_pairs(LIBRARY, [pair], [runtime], LANES).failures
+    assert any("mean different numbers" in f for f in failures)
+    assert any("do not meet" in f for f in failures)
