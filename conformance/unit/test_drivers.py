@@ -1,0 +1,183 @@
+"""Drivers by name: the catalogue, modes, processes, and the same results in every form of harness.
+
+Plan.
+  catalogue  every entry is complete, a bad one is refused with its name, files are named after versions
+  opening    what answers is held against the entry; a missing file or driver is told, not raised
+  forms      every form of harness and source gives a function the same inputs, in the same order
+  process    one process per driver gives results; one that dies costs one function; replay runs one lane
+Not covered here: whether functions keep their bounds (vair check --driver).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from codegen.execute import execute
+from codegen.kernels import KernelOptions
+from codegen.library import load_library
+from conformance import cases
+from conformance.check.identity import Identity
+from conformance.check.result import FunctionResult
+from conformance.drivers import run as runner
+from conformance.drivers.modes import modes, modes_of
+from conformance.drivers.run import run_driver
+from targets import Device, TargetUnavailable, open_runtime
+from targets.drivers import (
+    Driver,
+    catalogue,
+    check_match,
+    driver,
+    environment_of,
+    parse,
+    present,
+    probe_driver,
+)
+
+GOOD = {"title": "a driver", "target": "glsl", "install": "apt", "match": {"device": "llvmpipe"}}
+LLVMPIPE = Device(
+    "glsl", "OpenGL 4.5", "Mesa/X.org: 4.5 (Core Profile) Mesa 22.3.6", "llvmpipe (LLVM 15.0.6)"
+)
+FUNCTIONS = ("to_world", "frame_from_tangent", "hammersley")
+"""Structs in and out, vectors, and whole numbers."""
+LANES = 131
+SEED = 5
+
+
+def test_catalogue_names_the_software_drivers() -> None:
+    assert {d.target for d in catalogue().values()} == {"glsl", "wgsl", "opencl"}
+    for known in catalogue().values():
+        assert known.install and known.title
+        assert known.system or known.match
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"title": None}, "driver odd lacks title"),
+        ({"colour": "red"}, "driver odd has the unknown key colour"),
+        ({"target": "metal"}, "driver odd is of an unknown target metal"),
+        ({"match": {"index": "0"}}, "driver odd must match some of api, driver, device"),
+        ({"match": {}}, "driver odd must match some of api, driver, device"),
+    ],
+)
+def test_bad_entry_is_refused(change: dict[str, Any], sentence: str) -> None:
+    entry = {key: value for key, value in {**GOOD, **change}.items() if value is not None}
+    with pytest.raises(ValueError, match=sentence):
+        parse({"odd": entry}, "drivers.toml")
+
+
+def test_unknown_driver_is_answered_with_the_nearest() -> None:
+    with pytest.raises(ValueError, match='unknown driver "swiftshade"; did you mean "swiftshader"'):
+        driver("swiftshade")
+
+
+def test_results_are_named_after_driver_and_version() -> None:
+    assert driver("llvmpipe-compute").slug(LLVMPIPE) == "llvmpipe-compute-22.3.6"
+    gpu = Device("glsl", "OpenGL 4.6", "Maker: 4.6 (550.54)", "Board 9000/PCIe")
+    assert driver("system-glsl").slug(gpu) == "glsl-board-9000-pcie-maker-4.6-550.54"
+
+
+def test_another_driver_than_the_one_asked_for_is_refused() -> None:
+    check_match(driver("llvmpipe-compute"), LLVMPIPE)
+    with pytest.raises(
+        TargetUnavailable, match=r"softpipe-compute did not answer, but one with device llvmpipe"
+    ):
+        check_match(driver("softpipe-compute"), LLVMPIPE)
+
+
+def test_missing_file_is_named_with_what_brings_it() -> None:
+    absent = Driver("odd", "", "wgsl", "apt-get install odd", files={"VK_DRIVER_FILES": ("/nowhere/*.json",)})
+    with pytest.raises(TargetUnavailable, match=r"none of /nowhere/\*.json is here: apt-get install odd"):
+        environment_of(absent)
+    assert isinstance(probe_driver(absent), TargetUnavailable)
+
+
+def test_driver_answers_a_probe_or_says_why_not() -> None:
+    known = driver("softpipe-fragment")
+    answer = present([known.name])[known.name]
+    if isinstance(answer, Device):
+        check_match(known, answer)
+    else:
+        assert known.install in str(answer)
+
+
+def test_driver_that_does_not_open_is_told() -> None:
+    odd = Driver("pocl", "", "opencl", "apt-get install odd", environment={"VAIR_OPENCL_DEVICE": "no such"})
+    assert isinstance(reason := probe_driver(odd), TargetUnavailable)
+    assert "VAIR_OPENCL_DEVICE=no such" in str(reason) or "apt-get install" in str(reason)
+
+
+def test_modes_fit_their_drivers() -> None:
+    def names(driver_name: str) -> list[str]:
+        return [m.name for m in modes_of(driver(driver_name), ["all"])]
+
+    assert names("llvmpipe-compute") == ["default", "pair", "uniform", "literal", "precise"]
+    assert names("llvmpipe-fragment") == ["default", "literal"]
+    assert names("softpipe-compute") == ["default", "pair", "uniform", "literal"]
+    assert names("lavapipe") == ["default", "pair", "uniform", "literal"]
+    assert names("pocl") == [*names("lavapipe"), "fast-relaxed", "contract-off"]
+
+
+@pytest.mark.parametrize("how", ["pair", "uniform", "literal"])
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_form_gives_the_same_results(target: str, name: str, how: str) -> None:
+    """Close, not equal: a compiler may reorder differently where it sees constants."""
+    library = load_library()
+    lanes = 11 if how == "literal" else LANES
+    inputs = cases.draw(library.function(name), "uniform", lanes, SEED)
+    plain = execute(library, name, inputs, open_runtime(target))
+    mode = modes()[how]
+    options = KernelOptions(form=mode.form, source=mode.source)  # type: ignore[arg-type]  # a table's strings
+    other = execute(library, name, inputs, open_runtime(target, **mode.settings()), options=options)
+    for a, b in zip(leaves(plain), leaves(other), strict=True):
+        assert a.shape == b.shape
+        np.testing.assert_allclose(a, b, rtol=1e-4, atol=1e-5)
+
+
+def leaves(value: Any) -> list[Any]:
+    return [x for part in value.values() for x in leaves(part)] if isinstance(value, dict) else [value]
+
+
+def test_two_lanes_at_once_take_any_number_of_lanes(target: str) -> None:
+    library = load_library()
+    for count in (1, 2, 65):
+        inputs = cases.draw(library.function("sin_angle"), "uniform", count, SEED)
+        pair = execute(library, "sin_angle", inputs, open_runtime(target), options=KernelOptions(form="pair"))
+        plain = execute(library, "sin_angle", inputs, open_runtime(target))
+        assert np.array_equal(np.asarray(pair), np.asarray(plain))
+
+
+def check(name: str, mode: str, **points: Any) -> FunctionResult:
+    """sin_angle on a driver, or a skip where it does not open. The probe is left out, for time."""
+    try:
+        run = run_driver(driver(name), LLVMPIPE, modes()[mode], ["sin_angle"], **points)
+    except TargetUnavailable as reason:
+        pytest.skip(f"{name}: {reason}")
+    (result,) = run.results
+    return result
+
+
+@pytest.mark.parametrize("name", [name for name, known in catalogue().items() if not known.system])
+def test_driver_checks_a_function_in_its_own_process(name: str) -> None:
+    result = check(name, "default", uniform=200, family=20)
+    assert result.passed, result.broken or result.failures[0].lines()
+    assert result.backend == f"{name}+default"
+    assert result.lanes > 200
+
+
+def test_process_that_ends_costs_one_function(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "MODULE", "conformance.unit.support.dying_worker")
+    run = run_driver(driver("llvmpipe-compute"), LLVMPIPE, modes()["default"], ["sin_angle", "mirror"])
+    assert [(r.function, r.stage) for r in run.results] == [("sin_angle", "execute"), ("mirror", "execute")]
+    assert "the driver's process ended with status 3 the driver gave up" in run.results[0].broken
+
+
+def test_replay_runs_one_lane() -> None:
+    identity = Identity("sin_angle", "llvmpipe-compute+pair", "uniform", 50, SEED, 7)
+    assert Identity.parse(str(identity)) == identity
+    result = check("llvmpipe-compute", "pair", replay=identity)
+    assert result.lanes == 1
+    assert result.passed
