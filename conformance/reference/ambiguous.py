@@ -127,10 +127,20 @@ def scheuermann_steps(inputs: Inputs) -> Mask:
     return np.asarray(found, dtype=np.bool_)
 
 
+def vanishing_texel(inputs: Inputs) -> Mask:
+    """No tangent on the surface, or a texel whose part in it is within a factor 100 of the denormals.
+
+    Times a component of the frame that part may be flushed, and the texel counts as empty.
+    """
+    size = np.abs(real(inputs["map_tangent"])[:, :2]).max(axis=-1)
+    empty = (size > 0.0) & (size < 100.0 * SMALLEST_NORMAL)
+    return np.asarray(tangent_along_normal(inputs) | empty)
+
+
 def brushed_steps(inputs: Inputs) -> Mask:
-    """No tangent on the surface, or a step of the highlight of the tangent that the map gives."""
+    """A vanishing texel, or a step of the highlight of the tangent that the map gives."""
     tangent = tangent_from_map(inputs["n"], inputs["t"], inputs["map_tangent"])
-    return np.asarray(tangent_along_normal(inputs) | specular_step({**inputs, "t": tangent}))
+    return np.asarray(vanishing_texel(inputs) | specular_step({**inputs, "t": tangent}))
 
 
 AMBIGUOUS: dict[str, Callable[[Inputs], Mask]] = {
@@ -143,7 +153,7 @@ AMBIGUOUS: dict[str, Callable[[Inputs], Mask]] = {
     "kajiya_kay_shade": specular_step,
     "strand_specular_half": half_specular_step,
     "strand_azimuth_cosine": azimuth_at_pole,
-    "tangent_from_map": tangent_along_normal,
+    "tangent_from_map": vanishing_texel,
     "tangent_shift": lambda inputs: cancelled_shift(inputs["t"], inputs["n"], inputs["shift"]),
     "scheuermann_shade": scheuermann_steps,
     "coat_path_banks": parallel_path,

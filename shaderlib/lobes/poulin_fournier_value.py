@@ -10,6 +10,9 @@ from shaderlib.lobes.satin_diffuse import satin_diffuse
 from shaderlib.lobes.satin_highlight import satin_highlight, satin_highlight_eight
 from shaderlib.lobes.satin_visible import satin_visible
 
+# Height of the steeper direction from which on the highlight, at most 4000 over that height, is finite.
+LEAST_HEIGHT = 1.0e-30
+
 
 def poulin_fournier_value(
     l: Direction, v: Direction, spread: Spread, specular: UnitInterval, exponent: Exponent
@@ -25,7 +28,9 @@ def poulin_fournier_value(
                 and v both see, over 2 sin(spread) l.z v.z: of (N.l) (N.v) / pi and of blinn_phong_scale(p)
                 (N.l) (N.v) (N.h)^p. Reciprocal; albedo at most 1
     degenerate  l.z <= 0, v.z <= 0 or no point of an arc sees both: 0
-    form        diffuse part in closed form; highlight by 12 Gauss-Legendre nodes, 4e-6 of its peak off
+    form        diffuse part in closed form; highlight by 12 Gauss-Legendre nodes, 4e-6 of its peak off. Its
+                integral is at most pitch times the smaller height, by which it is divided first: the product
+                of both heights may vanish
     source      Poulin and Fournier 1990, A Model for Anisotropic Reflection; geometry, self-blocking and both
                 integrals derived for this library, without the paper's floor between separate cylinders
     """
@@ -34,8 +39,8 @@ def poulin_fournier_value(
     seen_v = satin_visible(v, spread, edge)
     visible = vec2(max(seen_l.x, seen_v.x), min(seen_l.y, seen_v.y))
     pitch = 2.0 * edge.y
-    scale = blinn_phong_scale(exponent) / max(pitch * l.z * v.z, TINY_SQUARE)
-    highlight = scale * satin_highlight(l, v, visible, exponent)
+    seen = min(satin_highlight(l, v, visible, exponent) / max(pitch * min(l.z, v.z), TINY_SQUARE), 1.0)
+    highlight = blinn_phong_scale(exponent) * seen / max(max(l.z, v.z), LEAST_HEIGHT)
     value = (1.0 - specular) * satin_diffuse(l, v, visible, pitch) + specular * highlight
     return value if l.z > 0.0 and v.z > 0.0 else 0.0
 
@@ -61,7 +66,7 @@ def poulin_fournier_value_eight(
     seen_v = satin_visible(v, spread, edge)
     visible = vec2(max(seen_l.x, seen_v.x), min(seen_l.y, seen_v.y))
     pitch = 2.0 * edge.y
-    scale = blinn_phong_scale(exponent) / max(pitch * l.z * v.z, TINY_SQUARE)
-    highlight = scale * satin_highlight_eight(l, v, visible, exponent)
+    seen = min(satin_highlight_eight(l, v, visible, exponent) / max(pitch * min(l.z, v.z), TINY_SQUARE), 1.0)
+    highlight = blinn_phong_scale(exponent) * seen / max(max(l.z, v.z), LEAST_HEIGHT)
     value = (1.0 - specular) * satin_diffuse(l, v, visible, pitch) + specular * highlight
     return value if l.z > 0.0 and v.z > 0.0 else 0.0
