@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 from zlib import crc32
 
 import numpy as np
 
 from codegen.evaluate.arrays import Value
-from codegen.ir.nodes import Function
+from codegen.ir.nodes import Function, Parameter
 from codegen.library import Library
 from conformance import cases
 from conformance.fuzz.choices import Choice
@@ -108,10 +109,15 @@ def input_pair(relation: InputRelation, function: Function, inputs: dict[str, An
 
 def draw(function: Function, lanes: int, seed: int) -> dict[str, Any]:
     """Inputs inside a function's domain: half uniform, half from its families of hard cases in turn."""
-    families = cases.families_for(function.parameters)
+    families = _families(function.name, function.parameters)
     family = families[seed % len(families)]
     first, second = (cases.draw(function, name, lanes // 2, seed) for name in ("uniform", family))
     return {name: _joined(first[name], second[name]) for name in first}
+
+
+@cache
+def _families(name: str, parameters: tuple[Parameter, ...]) -> tuple[str, ...]:
+    return tuple(cases.families_for(parameters))
 
 
 def _joined(a: Any, b: Any) -> Any:
