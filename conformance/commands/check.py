@@ -69,8 +69,8 @@ def command(
     if drivers:
         if names:
             raise UserError("--target and --driver exclude each other: a driver has its target")
-        if record and (functions or part.of > 1):
-            raise UserError("--record keeps the results of all functions; leave out --function and --shard")
+        if record and part.of > 1:
+            raise UserError("--record keeps the results of one machine; leave out --shard")
         wanted = [name for name in wanted if part.holds(name, "driver")]
         results, missing, complaints = check_drivers(library, wanted, drivers, modes, record)
     elif modes or record:

@@ -22,12 +22,14 @@ _TOKENS = re.compile(r"(?P<name>\w+)(?: = |: )|\[(?P<words>[0-9a-f ]+)\]|(?P<bra
 
 
 def keep(library: Library, runs: Iterable[DriverRun], today: date, folder: Path = FOLDER) -> list[Path]:
-    """Write the results into the files of their drivers; other modes of a file stay as they are."""
+    """Write the results into the files of their drivers; their other modes and functions stay as they are."""
     written = []
     for run in runs:
         path = folder / f"{run.driver.slug(run.device)}.json"
         data = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"modes": {}}
-        data["modes"][run.mode.name] = mode_data(library, run, today)
+        data["modes"][run.mode.name] = merged(
+            data["modes"].get(run.mode.name), mode_data(library, run, today)
+        )
         whole = {
             "format": FORMAT,
             "driver": run.driver.name,
@@ -39,6 +41,15 @@ def keep(library: Library, runs: Iterable[DriverRun], today: date, folder: Path 
         write_text(path, as_text(whole))
         written.append(path)
     return written
+
+
+def merged(before: dict[str, Any] | None, new: dict[str, Any]) -> dict[str, Any]:
+    """A mode's data renewed: functions that were not run keep what was recorded, and so does the number of
+    inputs, which speaks of the run of most functions."""
+    if before is None or set(before["functions"]) <= set(new["functions"]):
+        return new
+    functions = {**before["functions"], **new["functions"]}
+    return {**new, "inputs": before["inputs"], "functions": functions}
 
 
 def mode_data(library: Library, run: DriverRun, today: date) -> dict[str, Any]:

@@ -56,6 +56,15 @@ def test_record_keeps_other_modes_and_one_line_per_function(tmp_path: Path) -> N
     assert sum('"sin_angle":' in line for line in lines) == 2
 
 
+def test_functions_that_were_not_run_keep_what_was_recorded(tmp_path: Path) -> None:
+    kept(tmp_path, "default", result("sin_angle", 2.5e-7), result("mirror", 1e-7))
+    path = kept(tmp_path, "default", result("mirror", 3e-7))
+    recorded = json.loads(path.read_text(encoding="utf-8"))["modes"]["default"]
+    measured = {name: f["errors"][0]["measured"] for name, f in recorded["functions"].items()}
+    assert measured == {"sin_angle": 2.5e-7, "mirror": 3e-7}
+    assert recorded["inputs"] == 20
+
+
 @pytest.mark.parametrize(
     ("shown", "words"),
     [
