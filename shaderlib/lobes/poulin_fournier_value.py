@@ -30,7 +30,8 @@ def poulin_fournier_value(
     degenerate  l.z <= 0, v.z <= 0 or no point of an arc sees both: 0
     form        diffuse part in closed form; highlight by 12 Gauss-Legendre nodes, 4e-6 of its peak off. Its
                 integral is at most pitch times the smaller height, by which it is divided first: the product
-                of both heights may vanish
+                of both heights may vanish. The max around 1 - specular changes no value: it keeps compilers
+                from interpolating from diffuse to highlight by their difference
     source      Poulin and Fournier 1990, A Model for Anisotropic Reflection; geometry, self-blocking and both
                 integrals derived for this library, without the paper's floor between separate cylinders
     """
@@ -41,7 +42,7 @@ def poulin_fournier_value(
     pitch = 2.0 * edge.y
     seen = min(satin_highlight(l, v, visible, exponent) / max(pitch * min(l.z, v.z), TINY_SQUARE), 1.0)
     highlight = blinn_phong_scale(exponent) * seen / max(max(l.z, v.z), LEAST_HEIGHT)
-    value = (1.0 - specular) * satin_diffuse(l, v, visible, pitch) + specular * highlight
+    value = max(1.0 - specular, 0.0) * satin_diffuse(l, v, visible, pitch) + specular * highlight
     return value if l.z > 0.0 and v.z > 0.0 else 0.0
 
 
@@ -68,5 +69,5 @@ def poulin_fournier_value_eight(
     pitch = 2.0 * edge.y
     seen = min(satin_highlight_eight(l, v, visible, exponent) / max(pitch * min(l.z, v.z), TINY_SQUARE), 1.0)
     highlight = blinn_phong_scale(exponent) * seen / max(max(l.z, v.z), LEAST_HEIGHT)
-    value = (1.0 - specular) * satin_diffuse(l, v, visible, pitch) + specular * highlight
+    value = max(1.0 - specular, 0.0) * satin_diffuse(l, v, visible, pitch) + specular * highlight
     return value if l.z > 0.0 and v.z > 0.0 else 0.0
