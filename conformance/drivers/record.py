@@ -115,3 +115,14 @@ def as_text(data: dict[str, Any]) -> str:
 def read_all(folder: Path = FOLDER) -> dict[str, dict[str, Any]]:
     """Every recorded file by its name without the ending."""
     return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json"))}
+
+
+def stale(library: Library, recorded: dict[str, dict[str, Any]]) -> Iterable[tuple[str, str, list[str]]]:
+    """File, mode and functions that were recorded of other sources than the library's, or not at all."""
+    now = {name: library.select([name]).source_hash for name in library.public}
+    for stem, data in recorded.items():
+        for mode, results in data["modes"].items():
+            then = {name: f["sources"] for name, f in results["functions"].items()}
+            old = [name for name, digest in now.items() if then.get(name) != digest]
+            if old:
+                yield stem, mode, old

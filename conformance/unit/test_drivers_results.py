@@ -17,7 +17,7 @@ from codegen.library import load_library
 from conformance.check.result import BoundResult, FunctionResult
 from conformance.drivers.matrix import page
 from conformance.drivers.modes import modes
-from conformance.drivers.record import FOLDER, hex_words, keep, read_all
+from conformance.drivers.record import FOLDER, hex_words, keep, read_all, stale
 from conformance.drivers.run import DriverRun
 from targets import Device
 from targets.drivers import catalogue, driver
@@ -63,6 +63,14 @@ def test_functions_that_were_not_run_keep_what_was_recorded(tmp_path: Path) -> N
     measured = {name: f["errors"][0]["measured"] for name, f in recorded["functions"].items()}
     assert measured == {"sin_angle": 2.5e-7, "mirror": 3e-7}
     assert recorded["inputs"] == 20
+
+
+def test_results_of_other_sources_are_stale(tmp_path: Path) -> None:
+    path = kept(tmp_path, "default", *(result(name, 1e-7) for name in load_library().public))
+    assert list(stale(load_library(), read_all(tmp_path))) == []
+    data = json.loads(path.read_text(encoding="utf-8"))
+    data["modes"]["default"]["functions"]["mirror"]["sources"] = "other"
+    assert list(stale(load_library(), {"pocl": data})) == [("pocl", "default", ["mirror"])]
 
 
 @pytest.mark.parametrize(
