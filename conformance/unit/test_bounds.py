@@ -46,7 +46,7 @@ def test_exact_needs_no_number() -> None:
     assert found["probe"][0].bound == 0.0
 
 
-DESCRIBED = {
+DESCRIBED: dict[str, dict[str, Any]] = {
     "absolute <= 1e-6: all": {},
     "relative <= 1e-6: all": {"measure": "relative"},
     "relative <= 1e-6 (floor 0.25): all": {"measure": "relative", "floor": 0.25},
@@ -62,7 +62,7 @@ def test_description(text: str) -> None:
     assert read(**DESCRIBED[text]).describe() == text
 
 
-REFUSED = {
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "a bound needs its number": ({"bound": None}, "bound"),
     "a bound needs measure": ({"measure": None}, "measure"),
     "a bound needs domain": ({"domain": None}, "domain"),

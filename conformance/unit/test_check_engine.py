@@ -23,6 +23,7 @@ from conformance import cases
 from conformance.check import engine
 from conformance.check.engine import Backend, Draw, check_function
 from conformance.check.result import FunctionResult
+from conformance.reference import PROPERTY_ONLY
 from conformance.unit.support.sources import library_of
 
 SOURCE = "def probe(x: X) -> f32:\n    return x\n"
@@ -228,11 +229,13 @@ def probe(x: X) -> Pair:
 
 def test_struct_failure_shows_the_field_of_the_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     library = library_with(tmp_path, ALL + 'field = "high"\n', PAIR)
-    got = {"low": np.float32([9, 9]), "high": np.float32([[0, 0, 0], [0, 1, 0]])}
+    got = {"low": np.array([9, 9], np.float32), "high": np.array([[0, 0, 0], [0, 1, 0]], np.float32)}
     expected = {"low": np.zeros(2), "high": np.zeros((2, 3))}
     monkeypatch.setattr(engine, "find_reference", lambda *_: lambda x: expected)
     on = Backend("numpy", "a driver", lambda *_: got)
-    (failure,) = check_function(library, "probe", on, [Draw("d", 2, 0, {"x": np.float32([1, 2])})]).failures
+    (failure,) = check_function(
+        library, "probe", on, [Draw("d", 2, 0, {"x": np.array([1, 2], np.float32)})]
+    ).failures
     assert failure.identity.lane == 1
     assert "high " in failure.error
     assert "low" not in failure.error
@@ -261,7 +264,7 @@ def test_reference_is_the_functions_own_or_its_bases() -> None:
 
 def test_function_that_no_formula_fixes_is_held_against_the_evaluator() -> None:
     library = load_library()
-    (name,) = engine.PROPERTY_ONLY
+    (name,) = PROPERTY_ONLY
     inputs = engine.draw(library.function(name), "uniform", 50, 1).inputs
     reference = engine.find_reference(library, library.function(name))
     assert reference is not None
@@ -272,9 +275,9 @@ def test_function_that_no_formula_fixes_is_held_against_the_evaluator() -> None:
 def test_reference_gets_the_exact_inputs_widened() -> None:
     seen: list[Any] = []
     inputs: dict[str, Any] = {
-        "x": np.float32([0.1]),
-        "n": np.uint32([7]),
-        "s": {"y": np.float32([0.2]), "z": np.float32([[1, 2, 3]])},
+        "x": np.array([0.1], np.float32),
+        "n": np.array([7], np.uint32),
+        "s": {"y": np.array([0.2], np.float32), "z": np.array([[1, 2, 3]], np.float32)},
     }
     engine.expected_of(lambda *values: seen.extend(values), inputs)
     assert [v.dtype for v in seen[:2]] == [np.float64, np.uint32]
@@ -316,7 +319,7 @@ def test_backend_runs_a_target_and_names_its_driver(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(engine, "execute", lambda *arguments: arguments)
     found = engine.backend("glsl")
     assert (found.target, found.driver) == ("glsl", "an API; a driver 1.2; a device")
-    library, inputs = load_library(), {"x": np.float32([1])}
+    library, inputs = load_library(), {"x": np.array([1], np.float32)}
     assert found.run(library, "probe", inputs) == (library, "probe", inputs, runtime)
 
 

@@ -65,7 +65,7 @@ UNARY: dict[str, Callable[[Any], Any]] = {
 }
 POSITIVE = {"sqrt", "inverse_sqrt", "log", "log2"}
 ROWS = {**OPERATORS, **BUILTINS}
-SCALARS: tuple[Scalar, ...] = (F32, U32, BOOL)
+PAIRS: dict[Scalar, list[tuple[Any, Any]]] = {F32: [*FLOAT_PAIRS], U32: [*WORD_PAIRS], BOOL: [*TRUTH_PAIRS]}
 
 
 def column(element: Scalar, values: Any, arithmetic_name: str) -> Any:
@@ -92,7 +92,7 @@ def meaning(name: str, arithmetic_name: str, *columns: Any) -> Any:
 @pytest.mark.parametrize("name", BINARY)
 def test_two_operands(name: str, arithmetic_name: str) -> None:
     tried = 0
-    for element, pairs in zip(SCALARS, (FLOAT_PAIRS, WORD_PAIRS, TRUTH_PAIRS), strict=True):
+    for element, pairs in PAIRS.items():
         if ROWS[name].result((element, element)) is None:
             continue
         columns = [column(element, [p[k] for p in pairs], arithmetic_name) for k in (0, 1)]
@@ -173,7 +173,7 @@ def test_geometry(size: int, arithmetic_name: str) -> None:
 
 def test_dot_adds_from_the_first_component_on() -> None:
     """The evaluator's order is part of its meaning: ((x + y) + z) + w, every operation rounded."""
-    a = np.float32([[1.0, 2.0**-24, 2.0**-24, 0.0]])
+    a = np.array([[1.0, 2.0**-24, 2.0**-24, 0.0]], np.float32)
     b = np.ones((1, 4), np.float32)
     assert meaning("dot", "float32", a, b)[0] == np.float32(1.0)
     assert meaning("dot", "float32", a[:, ::-1], b)[0] == np.float32(1.0 + 2.0**-23)
