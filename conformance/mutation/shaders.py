@@ -1,0 +1,109 @@
+"""Mutants of the library under `vair check`: the changed source goes through the front end.
+
+A mutant is first checked on few points, and on more points and in its callers where that shows nothing.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+from collections.abc import Iterable
+
+from codegen.errors import SourceError, UserError
+from codegen.frontend.source import ROOT_PACKAGE
+from codegen.ir.nodes import callees
+from codegen.ir.verify import MalformedIRError
+from codegen.library import Library, default_root, load_library
+from conformance.check import engine
+from conformance.check.engine import Draw
+from conformance.mutation.isolated import KILLED, SURVIVED
+from conformance.mutation.plan import Group, Subject, tree_of
+from conformance.mutation.sites import Mutant
+
+REFUSED = "refused"
+"""The front end refuses the changed source: no mutant."""
+
+
+def with_source(path: str, tree: ast.Module) -> Library:
+    """The library with one source replaced."""
+    library = Library(default_root())
+    module = path.removesuffix(".py").replace("/", ".")
+    assert module.startswith(ROOT_PACKAGE)
+    file = library.resolver.file(module)
+    for node in tree.body:
+        match node:
+            case ast.FunctionDef(name=name):
+                file.functions[name] = node
+            case (
+                ast.Assign(targets=[ast.Name(id=name)], value=value)
+                | ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value)
+            ):
+                file.values[name] = value
+    return library
+
+
+@functools.cache
+def callers() -> dict[str, list[str]]:
+    """Function -> the functions that call it."""
+    found: dict[str, list[str]] = {}
+    for f in load_library().functions.values():
+        for name in callees(f):
+            found.setdefault(name, []).append(f.name)
+    return found
+
+
+def public_users(name: str, limit: int) -> list[str]:
+    """The public functions that reach a function, nearest first; the function itself if it is public."""
+    public = load_library().public
+    found: list[str] = []
+    waiting, seen = [name], {name}
+    while waiting:
+        current = waiting.pop(0)
+        if current in public:
+            found.append(current)
+        for caller in callers().get(current, ()):
+            if caller not in seen:
+                seen.add(caller)
+                waiting.append(caller)
+    return found[:limit]
+
+
+@functools.lru_cache(maxsize=64)
+def points(name: str, uniform: int, family: int) -> list[Draw]:
+    """The points of the unchanged function."""
+    return list(engine.draws(load_library().function(name), uniform, family))
+
+
+def notices(library: Library, names: Iterable[str], uniform: int, family: int) -> bool:
+    """Whether the check of any of these functions fails."""
+    on = engine.backend("numpy")
+    return any(
+        not engine.check_function(library, name, on, points(name, uniform, family)).passed for name in names
+    )
+
+
+def names_in(mutant: Mutant, subject: Subject) -> list[str]:
+    """The functions that a mutant changes: one, or all of the file for a constant."""
+    place = mutant.place.partition(".")[0]
+    if place:
+        return [place]
+    return [n.name for n in ast.parse(subject.text).body if isinstance(n, ast.FunctionDef)]
+
+
+def judge(group: Group, subject: Subject, mutant: Mutant) -> str:
+    """KILLED, SURVIVED or REFUSED."""
+    try:
+        library = with_source(subject.path, tree_of(group, subject, mutant))
+        changed = names_in(mutant, subject)
+        for name in changed:
+            library.function(name)
+    except (SourceError, UserError, MalformedIRError):
+        return REFUSED
+    users = list(dict.fromkeys(user for name in changed for user in public_users(name, 50)))
+    uniform, family, _ = group.first
+    if notices(library, users[:1], uniform, family):
+        return KILLED
+    uniform, family, more = group.second
+    if notices(library, users[:1], uniform, family):
+        return KILLED
+    return KILLED if notices(library, users[1 : 1 + more], group.first[0], group.first[1]) else SURVIVED

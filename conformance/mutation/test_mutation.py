@@ -1,0 +1,149 @@
+"""The tests notice planted faults: a fixed sample of every group, and the machinery that plants them.
+
+Plan.
+  shares     of the sample in plan.toml, each group's share is killed (python -m conformance.mutation: all)
+  planted    every planted fault still fits its file, and the oracle's are all killed
+  machinery  a mutant is one change; a harmless change survives, a deadly one is killed, an endless one too
+  excuses    every entry of equivalent.toml excuses some mutant
+The trials run in a fresh process: forks of a process that has opened drivers would inherit their threads.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from conformance.mutation import python_rules, shader_rules
+from conformance.mutation.plan import PLANTED, excuses, groups, mutants_of, planted, tree_of
+from conformance.mutation.sites import Mutant, mutants, mutated
+
+ROOT = Path(__file__).parents[2]
+
+
+def outcomes(folder: Path, *arguments: str) -> list[dict[str, Any]]:
+    told = folder / "outcomes.json"
+    command = [sys.executable, "-m", "conformance.mutation", "--json", str(told), *arguments]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode in (0, 1), done.stdout[-3000:] + done.stderr[-3000:]
+    found: list[dict[str, Any]] = json.loads(told.read_text(encoding="utf-8"))
+    return found
+
+
+@pytest.mark.parametrize("name", groups())
+def test_share_of_a_sample_is_killed(name: str, tmp_path: Path) -> None:
+    rows = outcomes(tmp_path, "--sampled", name)
+    survivors = [row["mutant"] for row in rows if row["outcome"] == "survived"]
+    tried = [row for row in rows if row["outcome"] != "refused"]
+    assert len(tried) >= groups()[name].sample * 3 // 4
+    assert len(survivors) <= (1.0 - groups()[name].share) * len(tried), "\n".join(survivors)
+
+
+def test_every_planted_fault_fits() -> None:
+    found = [(g, s, m) for g in groups().values() for s in g.subjects for m in planted(g.name, s.path)]
+    assert len(found) > 20
+    for group, subject, mutant in found:
+        assert ast.dump(tree_of(group, subject, mutant)) != ast.dump(ast.parse(subject.text)), mutant
+
+
+SOURCE = '''
+"""Text."""
+Alias = dict[str, int]
+def f(a: int, b: int = 1) -> int:
+    """Text."""
+    assert a < b
+    if a < b:
+        raise ValueError("no" + "thing")
+    return min(a - 1, b)
+'''
+
+
+def described(found: list[Mutant]) -> set[tuple[str, str, str]]:
+    return {(m.operator, m.before, m.after) for m in found}
+
+
+def test_mutants_of_a_module() -> None:
+    found = mutants("a.py", SOURCE, python_rules.rule)
+    assert {m.place for m in found} == {"f"}
+    assert described(found) >= {
+        ("comparison", "a < b", "a <= b"),
+        ("comparison", "a < b", "a >= b"),
+        ("operator", "a - 1", "a + 1"),
+        ("name exchanged", "min", "max"),
+        ("number", "1", "2"),
+    }
+    assert not [m for m in found if m.before in ("'Text.'", "'no'", "'thing'") or "assert" in m.before]
+    assert len({(m.place, m.before, m.after) for m in found}) == len(found)
+
+
+def test_mutant_is_one_change() -> None:
+    original = ast.unparse(ast.parse(SOURCE)).splitlines()
+    for m in mutants("a.py", SOURCE, python_rules.rule):
+        lines = ast.unparse(mutated(SOURCE, python_rules.rule, m.index)).splitlines()
+        assert lines != original
+        assert len(set(lines) ^ set(original)) <= 3, m
+
+
+def test_mutants_of_a_shading_function() -> None:
+    text = (
+        "def f(a: X, v: V) -> f32:\n    if a < 0.5:\n        return max(v.x * a, 0.0)\n    return 2.0 - a\n"
+    )
+    assert described(mutants("a.py", text, shader_rules.rule)) >= {
+        ("comparison", "a < 0.5", "a >= 0.5"),
+        ("components", "v.x", "v.y"),
+        ("guard removed", "max(v.x * a, 0.0)", "v.x * a"),
+        ("term dropped", "v.x * a", "a"),
+        ("operands exchanged", "2.0 - a", "a - 2.0"),
+        ("constant", "2.0", "2.04"),
+    }
+
+
+CHANGES = {
+    "harmless": ("", "survived"),
+    "deadly": ("int(lane) -> int(lane) + 1", "killed"),
+    "broken": ("import dataclass -> import nothing", "killed"),
+    "endless": ("parts = -> sum(1 for _ in iter(int, 1)); parts =", "timed out"),
+}
+TRIALS = """
+import ast, json, sys
+from conformance.mutation.isolated import Trial, dependants, warm_up
+
+tests, told = [sys.argv[1]], {}
+assert warm_up(tests) == 0
+path = "conformance/check/identity.py"
+stale = dependants("conformance.check.identity")
+for name, change in json.loads(sys.argv[2]).items():
+    old, _, new = change.partition(" -> ")
+    text = open(path).read()
+    tree = ast.parse(text.replace(old, new, 1) if change else text)
+    told[name] = Trial(tests, path, tree, stale, 10).wait()
+print(json.dumps(told))
+"""
+
+
+def test_trials_tell_harmless_from_deadly(tmp_path: Path) -> None:
+    test = tmp_path / "test_identity.py"
+    test.write_text(
+        "from conformance.check.identity import Identity\n"
+        "def test_it() -> None:\n"
+        "    assert Identity.parse('f/t/u/9/1/3').lane == 3\n",
+        encoding="utf-8",
+    )
+    changes = json.dumps({name: change for name, (change, _) in CHANGES.items()})
+    command = [sys.executable, "-c", TRIALS, str(test), changes]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert json.loads(done.stdout.splitlines()[-1]) == {name: o for name, (_, o) in CHANGES.items()}
+
+
+def test_every_excuse_excuses_something() -> None:
+    every = [m for g in groups().values() for s in g.subjects for m in mutants_of(g, s)]
+    idle = [e for e in excuses() if not any(e.covers(m) for m in every)]
+    assert not idle
+    assert all(e.reason for e in excuses())
+    assert not [m for m in every if m.index == PLANTED and any(e.covers(m) for e in excuses())]
