@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import signal
 import subprocess
 import sys
 import tempfile
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from codegen.errors import UserError
 from conformance.check.identity import Identity
 from conformance.check.result import FunctionResult
 from conformance.drivers.modes import Mode
@@ -19,6 +21,8 @@ from targets import Device, TargetUnavailable
 from targets.drivers import Driver, environment_of, strings
 
 ROOT = Path(__file__).parents[2]
+OUTSIDE = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+"""Signals that someone sends to a process; a driver that fails gets another one."""
 MODULE = "conformance.drivers.worker"
 
 Report = Callable[[FunctionResult], None]
@@ -51,7 +55,7 @@ def run_driver(
     told     called with every result as it comes
     uniform, family  how many points; None: as many as the mode asks for
     replay   only this lane
-    raises   TargetUnavailable where the driver does not open
+    raises   TargetUnavailable where the driver does not open; UserError where someone ended its process
 
     Where the process ends before a function's result, that function failed to execute, and a new process
     goes on with the rest.
@@ -60,7 +64,9 @@ def run_driver(
     left = list(functions)
     while left:
         job = Job(chosen.name, how.name, tuple(left), uniform, family, replay)
-        found, ending = _process(chosen, job, told)
+        found, status, words = _process(chosen, job, told)
+        if -status in OUTSIDE:
+            raise UserError(f"the process of {chosen.name} was ended from outside, by signal {-status}")
         results += found
         left = left[len(found) :]
         if left:
@@ -70,15 +76,15 @@ def run_driver(
                 "; ".join(strings(device)),
                 backend=backend_name(chosen.name, how.name),
                 stage="execute",
-                broken=f"does not execute: the driver's process ended {ending}",
+                broken=f"does not execute: the driver's process ended with status {status} {words}".rstrip(),
             )
             told(lost)
             results.append(lost)
     return DriverRun(chosen, device, how, tuple(results))
 
 
-def _process(chosen: Driver, job: Job, told: Report) -> tuple[list[FunctionResult], str]:
-    """The results of one process, and how it ended."""
+def _process(chosen: Driver, job: Job, told: Report) -> tuple[list[FunctionResult], int, str]:
+    """The results of one process, its exit status, and the last line that it said."""
     found: list[FunctionResult] = []
     with tempfile.TemporaryFile() as noise:
         with subprocess.Popen(
@@ -99,7 +105,7 @@ def _process(chosen: Driver, job: Job, told: Report) -> tuple[list[FunctionResul
                 found.append(answer)
         noise.seek(0)
         last = noise.read().decode(errors="replace").strip().splitlines()[-1:]
-    return found, " ".join([f"with status {process.returncode}", *last])
+    return found, process.returncode, " ".join(last)
 
 
 def _answers(pipe: Any) -> Iterable[Any]:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from codegen.errors import UserError
 from codegen.execute import execute
 from codegen.kernels import KernelOptions
 from codegen.library import load_library
@@ -173,6 +174,15 @@ def test_process_that_ends_costs_one_function(monkeypatch: pytest.MonkeyPatch) -
     run = run_driver(driver("llvmpipe-compute"), LLVMPIPE, modes()["default"], ["sin_angle", "mirror"])
     assert [(r.function, r.stage) for r in run.results] == [("sin_angle", "execute"), ("mirror", "execute")]
     assert "the driver's process ended with status 3 the driver gave up" in run.results[0].broken
+
+
+def test_process_that_someone_ends_is_no_failure_of_the_driver(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "MODULE", "conformance.unit.support.dying_worker")
+    monkeypatch.setenv("VAIR_TEST_SIGNAL", "yes")
+    with pytest.raises(
+        UserError, match="the process of llvmpipe-compute was ended from outside, by signal 15"
+    ):
+        run_driver(driver("llvmpipe-compute"), LLVMPIPE, modes()["default"], ["sin_angle"])
 
 
 def test_replay_runs_one_lane() -> None:
