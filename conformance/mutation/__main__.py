@@ -47,10 +47,11 @@ def main() -> int:
             print(f"{name}: {e}", file=sys.stderr)
             return 2
         t = tally(found[name])
-        missed |= t.share < group.share
+        share = group.sampled_share if given.sampled else group.share
+        missed |= t.share < share
         print(
             f"{name}: {t.killed} killed, {t.survived} survived, {t.equivalent} equivalent, "
-            f"{t.refused} refused; {t.share:.1%} of {group.share:.0%}",
+            f"{t.refused} refused; {t.share:.1%} of {share:.0%}",
             flush=True,
         )
     if given.json:

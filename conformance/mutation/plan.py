@@ -45,6 +45,7 @@ class Group:
     what: str
     share: float
     sample: int
+    sampled_share: float
     limit: float
     subjects: tuple[Subject, ...]
     first: tuple[int, int, int]
@@ -63,6 +64,7 @@ def _group(name: str, data: dict[str, Any]) -> Group:
         data["what"],
         float(data["share"]),
         int(data["sample"]),
+        float(data["sampled_share"]),
         float(data.get("limit", 60)),
         tuple(subjects),
         tuple(data.get("first", (0, 0, 0))),

@@ -48,7 +48,8 @@ CALLS = {
 }
 GUARDS = {"max", "min", "clamp", "abs", "floor", "safe_sqrt", "normalize", "safe_normalize"}
 """Functions whose call is replaced by its first argument."""
-SYMMETRIC = {"min", "max", "dot", "sin_angle"}
+SYMMETRIC = {"min", "max", "clamp", "dot", "sin_angle"}
+"""Functions that give the same with their first two arguments exchanged (clamp: min of max)."""
 COMPONENTS = str.maketrans("xyzw", "yxxz")
 
 

@@ -1,6 +1,7 @@
 """Mutants of the library under `vair check`: the changed source goes through the front end.
 
-A mutant is first checked on few points, and on more points and in its callers where that shows nothing.
+A mutant is first checked on few points, and on more points and in its callers where that shows nothing;
+last, it may not lose what WGSL guarantees of the function (conformance.guarantees).
 """
 
 from __future__ import annotations
@@ -9,24 +10,31 @@ import ast
 import functools
 from collections.abc import Iterable
 
+import numpy as np
+
 from codegen.errors import SourceError, UserError
 from codegen.frontend.source import ROOT_PACKAGE
+from codegen.intervals import permitted
 from codegen.ir.nodes import callees
 from codegen.ir.verify import MalformedIRError
 from codegen.library import Library, default_root, load_library
 from conformance.check import engine
 from conformance.check.engine import Draw
+from conformance.execute.further import codomains, leaves_codomain, with_further_bounds
 from conformance.mutation.isolated import KILLED, SURVIVED
 from conformance.mutation.plan import Group, Subject, tree_of
 from conformance.mutation.sites import Mutant
+from conformance.reference import PROPERTY_ONLY
 
 REFUSED = "refused"
 """The front end refuses the changed source: no mutant."""
+TABLE = "wgsl"
+"""Whose guarantees a mutant must not lose: many a guard is there for what other targets may do."""
 
 
 def with_source(path: str, tree: ast.Module) -> Library:
     """The library with one source replaced."""
-    library = Library(default_root())
+    library = with_further_bounds(Library(default_root()))
     module = path.removesuffix(".py").replace("/", ".")
     assert module.startswith(ROOT_PACKAGE)
     file = library.resolver.file(module)
@@ -76,10 +84,31 @@ def points(name: str, uniform: int, family: int) -> list[Draw]:
 
 def notices(library: Library, names: Iterable[str], uniform: int, family: int) -> bool:
     """Whether the check of any of these functions fails."""
+    return any(_fails(library, name, points(name, uniform, family)) for name in names)
+
+
+def _fails(library: Library, name: str, draws: list[Draw]) -> bool:
     on = engine.backend("numpy")
-    return any(
-        not engine.check_function(library, name, on, points(name, uniform, family)).passed for name in names
-    )
+    if any(leaves_codomain(name, on.run(library, name, d.inputs)) for d in draws if name in codomains()):
+        return True
+    if name in PROPERTY_ONLY:  # its reference would be the mutant; test_recorded_pattern.py keeps the pattern
+        return any(
+            not np.array_equal(
+                np.asarray(on.run(library, name, d.inputs)),
+                np.asarray(on.run(load_library(), name, d.inputs)),
+            )
+            for d in draws
+        )
+    return not engine.check_function(library, name, on, draws).passed
+
+
+def loses_guarantees(library: Library, name: str, draws: list[Draw]) -> bool:
+    """Whether a specification guarantees the function at fewer points than it was guaranteed at."""
+
+    def guaranteed(of: Library, d: Draw) -> int:
+        return int(permitted(of, name, d.inputs, TABLE, follow_forks=False).guaranteed.sum())
+
+    return any(guaranteed(library, d) < guaranteed(load_library(), d) for d in draws)
 
 
 def names_in(mutant: Mutant, subject: Subject) -> list[str]:
@@ -106,4 +135,10 @@ def judge(group: Group, subject: Subject, mutant: Mutant) -> str:
     uniform, family, more = group.second
     if notices(library, users[:1], uniform, family):
         return KILLED
-    return KILLED if notices(library, users[1 : 1 + more], group.first[0], group.first[1]) else SURVIVED
+    uniform, family, _ = group.first
+    callers_notice = notices(library, users[1 : 1 + more], uniform, family)
+    if callers_notice or any(
+        loses_guarantees(library, name, points(name, uniform, family)) for name in users[:1]
+    ):
+        return KILLED
+    return SURVIVED

@@ -21,6 +21,8 @@ Rule = Callable[[ast.AST], Iterable[Offer]]
 _UNTOUCHED_FIELDS = frozenset({"annotation", "returns", "decorator_list", "type_comment", "bases"})
 
 
+_REFUSALS = frozenset({"fail", "error"})
+"""Methods that raise: their sentences are left alone like those of raise."""
 _LEFT_ALONE = (ast.Raise, ast.Assert, ast.Import, ast.ImportFrom, ast.Global)
 
 
@@ -101,7 +103,10 @@ def sites(tree: ast.AST, rule: Rule, place: str = "") -> Iterator[Site]:
         if isinstance(node, _LEFT_ALONE) or _is_text(node) or (not place and _is_alias(node)):
             continue
         for operator, replacement in rule(node):
-            yield Site(holder, slot, node, place, operator, replacement)
+            if ast.dump(replacement) != ast.dump(node):  # vec3(0.0, 0.0, 1.0) with its arguments exchanged
+                yield Site(holder, slot, node, place, operator, replacement)
+        if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in _REFUSALS:
+            continue
         named = isinstance(node, ast.FunctionDef | ast.ClassDef)
         inner = f"{place}.{node.name}".lstrip(".") if named else place  # type: ignore[attr-defined]
         yield from sites(node, rule, inner)

@@ -41,7 +41,7 @@ def test_share_of_a_sample_is_killed(name: str, tmp_path: Path) -> None:
     survivors = [row["mutant"] for row in rows if row["outcome"] == "survived"]
     tried = [row for row in rows if row["outcome"] != "refused"]
     assert len(tried) >= groups()[name].sample * 3 // 4
-    assert len(survivors) <= (1.0 - groups()[name].share) * len(tried), "\n".join(survivors)
+    assert len(survivors) <= (1.0 - groups()[name].sampled_share) * len(tried), "\n".join(survivors)
 
 
 def test_every_planted_fault_fits() -> None:
