@@ -11,6 +11,7 @@ that every count of the result is known beforehand.
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,7 +20,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.execute import kernel
+from codegen.kernels import kernel
 from codegen.library import Library, load_library
 from conformance import cases
 from conformance.check import engine
@@ -262,6 +263,37 @@ def test_reference_is_the_functions_own_or_its_bases() -> None:
     references = {f.name: engine.find_reference(library, f) for f in library.functions.values()}
     assert references["sin_angle_cosine"] is references["sin_angle"] is not None
     assert references["strand_cosine_banks_printed"] is not references["strand_cosine"]
+
+
+def test_only_variants_take_the_reference_and_the_exemptions_of_their_base(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    library = load_library()
+    base = library.function("half_vector")
+    variant = replace(base, name="probe_other", kind="variant", base="half_vector")
+    printed = replace(variant, kind="printed")
+    assert engine.find_reference(library, variant) is engine.find_reference(library, base) is not None
+    assert engine.find_reference(library, printed) is None
+    asked: list[tuple[str, str | None]] = []
+
+    def nothing(name: str, inputs: Any, of: str | None) -> Any:
+        asked.append((name, of))
+        return np.zeros(10, np.bool_)
+
+    monkeypatch.setattr(engine, "ambiguous", nothing)
+    run = engine.backend("numpy").run
+    for name in ("half_vector", "sin_angle_cosine", "strand_cosine_banks_printed"):
+        check_function(
+            library,
+            name,
+            Backend("numpy", "a driver", run),
+            list(engine.draws(library.function(name), 10, 10))[:1],
+        )
+    assert asked == [
+        ("half_vector", None),
+        ("sin_angle_cosine", "sin_angle"),
+        ("strand_cosine_banks_printed", None),
+    ]
 
 
 def test_function_that_no_formula_fixes_is_held_against_the_evaluator() -> None:

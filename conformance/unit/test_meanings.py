@@ -142,6 +142,19 @@ def test_bits(arithmetic_name: str) -> None:
     assert [float(x) for x in back] == [1.5, -2.0, float(np.float32(0.1))]
 
 
+def test_exact_division_by_zero_has_the_values_of_floats() -> None:
+    """Lanes that a branch does not take get there."""
+    a, b = (
+        column(F32, [1.0, -2.0, 0.0, 3.0, math.nan], "mpmath"),
+        column(F32, [0.0] * 3 + [2.0, 0.0], "mpmath"),
+    )
+    got = [float(x) for x in meaning("/", "mpmath", a, b)]
+    assert got[:2] == [math.inf, -math.inf]
+    assert got[3] == 1.5
+    assert math.isnan(got[2])
+    assert math.isnan(got[4])
+
+
 A = [(1.0, 2.0, 3.0, 5.0), (-1.5, 0.25, 4.0, -2.0)]
 B = [(-7.0, 0.5, 11.0, 1.0), (2.0, -3.0, 0.75, 8.0)]
 
