@@ -35,6 +35,7 @@ def outcomes(folder: Path, *arguments: str) -> list[dict[str, Any]]:
     return found
 
 
+@pytest.mark.nightly  # a minute of processor time
 @pytest.mark.parametrize("name", groups())
 def test_share_of_a_sample_is_killed(name: str, tmp_path: Path) -> None:
     rows = outcomes(tmp_path, "--sampled", name)

@@ -8,7 +8,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from conformance.reference.ambiguous import ROUNDING, Inputs, parallel_by_rounding, small_power
+from conformance.reference.ambiguous import (
+    ROUNDING,
+    SMALLEST_NORMAL,
+    Inputs,
+    parallel_by_rounding,
+    small_power,
+)
 from conformance.reference.exact import (
     Array,
     Mask,
@@ -186,6 +192,11 @@ def steep_depth(inputs: Inputs) -> Mask:
     return grazing(inputs["n"], inputs["w"]) & (sine(inputs["t"], inputs["w"]) > 0.0)
 
 
+def vanishing(sine_to_strand: Array) -> Mask:
+    """A sine whose square is below the float32 numbers that no target flushes: kappa is 0 there, as along t."""
+    return np.asarray((sine_to_strand > 0.0) & (sine_to_strand * sine_to_strand < SMALLEST_NORMAL), np.bool_)
+
+
 def shade_steps(inputs: Inputs, saturated: float, angles: bool = False) -> Mask:
     """Where a shaded value jumps: kappa on the strand, a small power at 0, a step between equal edges, a
     grazing coat.
@@ -196,6 +207,7 @@ def shade_steps(inputs: Inputs, saturated: float, angles: bool = False) -> Mask:
     coat, optics = inputs["coat"], inputs["optics"]
     coloured = real(optics["rho_reflect"]) != real(optics["rho_transmit"])
     mask = coloured & (parallel_by_rounding(t, l) | parallel_by_rounding(t, v))
+    mask |= coloured & (vanishing(sine(t, l)) | vanishing(sine(t, v)))
     product = cosine(t, l) * cosine(t, v)
     lobe = sine(t, l) * sine(t, v) + (product if angles else -product)
     mask |= small_power(optics["exponent"]) & (np.abs(lobe) <= 1e-6)
