@@ -21,7 +21,7 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 
 class Interval:
-    """A number, or every component of a vector, in [low, high]; scale "log" samples by magnitude from `least`."""
+    """A number, or every component, in [low, high]; scale "log" samples by magnitude from `least`."""
 
     def __init__(self, low: float, high: float, scale: str = "linear", least: float = 0.0) -> None: ...
 

@@ -1,10 +1,10 @@
 """Identities that the strand functions must keep on every target, whatever the reference says.
 
 Plan. On random directions and on triples near the axis and the highlight cone:
-  printed forms  strand_cosine_banks_printed = -strand_cosine; kajiya_printed(t, l, v) = strand_cosine(t, l, -v)
-  exchange       strand_cosine, strand_specular and strand_azimuth_cosine do not change if l and v are exchanged
+  printed forms  banks_printed = -strand_cosine; kajiya_printed(t, l, v) = strand_cosine(t, l, -v)
+  exchange       strand_cosine, strand_specular, strand_azimuth_cosine do not change if l and v are exchanged
   orientation    nor if t is reversed
-  rotation       nor if t, l and v are turned together by a quarter turn, which permutes and negates components
+  rotation       nor if t, l and v make a quarter turn together, which permutes and negates components
   parity         mirror(mirror(l)) = l; sin_angle(a, b) = sin_angle(b, a) = sin_angle(a, -b)
 Both sides err by no more than their declared absolute bounds, so they differ by no more than their sum: the
 tolerance is data of shaderlib/*/bounds.toml.

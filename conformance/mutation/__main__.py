@@ -67,7 +67,7 @@ def main() -> int:
             for r in results
         ]
         given.json.write_text(json.dumps(rows, indent=1), encoding="utf-8")
-    if not given.sampled and not given.file:
+    if given.write or not (given.sampled or given.file):
         write(found)
     return int(missed)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from conformance.mutation.isolated import SURVIVED
 from conformance.mutation.plan import excuse, groups
-from conformance.mutation.run import EQUIVALENT, Result, tally
+from conformance.mutation.run import EQUIVALENT, Result, all_jobs, tally
 
 README = Path(__file__).parent / "README.md"
 BEGIN, END = "<!-- {}: written by python -m conformance.mutation -->", "<!-- end of {} -->"
@@ -31,11 +31,13 @@ def _table(results: Sequence[Result]) -> list[str]:
 def section(name: str, results: Sequence[Result]) -> str:
     """The text of one group."""
     group, t = groups()[name], tally(results)
+    total = len(all_jobs(group))
+    tried = "" if len(results) == total else f"A sample of {len(results)} out of {total} changes: "
     refused = f" (and {t.refused} that the front end refuses)" if t.refused else ""
     lines = [
         f"### {name}: {group.what}",
         "",
-        f"{t.killed} of {t.killed + t.survived} mutants killed{refused}: {t.share:.1%}; "
+        f"{tried}{t.killed} of {t.killed + t.survived} mutants killed{refused}: {t.share:.1%}; "
         f"{group.share:.0%} are required. {t.equivalent} more are equivalent.",
         "",
         *_table(results),

@@ -40,7 +40,7 @@ def joined(table: str) -> dict[str, Callable[..., Any]]:
 REFERENCES = joined("REFERENCES")
 PREDICATES = joined("AMBIGUOUS")
 PROPERTY_ONLY = shells.PROPERTY_ONLY
-"""Functions that no formula fixes: they are tested by what they must do, and for agreement between targets."""
+"""Functions that no formula fixes: tested by what they must do, and for agreement between targets."""
 
 
 def reference_for(name: str, base: str | None = None) -> Callable[..., Any]:

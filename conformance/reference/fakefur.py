@@ -193,7 +193,7 @@ def steep_depth(inputs: Inputs) -> Mask:
 
 
 def vanishing(sine_to_strand: Array) -> Mask:
-    """A sine whose square is below the float32 numbers that no target flushes: kappa is 0 there, as along t."""
+    """A sine whose square is below what no target flushes: kappa is 0 there, as along t."""
     return np.asarray((sine_to_strand > 0.0) & (sine_to_strand * sine_to_strand < SMALLEST_NORMAL), np.bool_)
 
 
