@@ -1,6 +1,7 @@
 """Every runtime moves words unchanged, computes, reports what fails, and says what it runs on."""
 
 import sys
+import weakref
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from types import SimpleNamespace
@@ -12,6 +13,7 @@ import pytest
 from targets import TARGETS, BuildFailed, TargetUnavailable, TimedRuntime, open_runtime
 from targets.harness import complete_program
 from targets.lanes import GROUP_LANES, MAX_GROUPS, UNWRITTEN, chunk_lanes
+from targets.programs import Programs
 from targets.words import Words
 
 COPY = "    store_u32(0, load_u32(0));\n"
@@ -30,6 +32,11 @@ LIBRARIES = {
     "wgsl": "fn twice(x: f32) -> f32 {\n    return x + x;\n}\n",
     "opencl": "static float twice(float x)\n{\n    return x + x;\n}\n",
 }
+
+
+def added(target: str, number: int) -> str:
+    """A program that adds a number to every word."""
+    return complete_program(target, "", f"    store_u32(0, load_u32(0) + {number}u);\n")
 
 
 def every_kind_of_word() -> Words:
@@ -131,13 +138,39 @@ def test_two_programs_take_turns(target: str, runtime: TimedRuntime) -> None:
 
 
 def test_text_is_built_once(target: str, runtime: TimedRuntime) -> None:
-    built: dict[Any, Any] = vars(runtime)["_programs"]
-    program = complete_program(target, "", "    store_u32(0, load_u32(0) + 12345u);\n")
+    kept: Programs[Any, Any] = vars(runtime)["_programs"]
+    program = added(target, 12345)
     words = every_kind_of_word()
     runtime.run(program, words, 1)
-    before = dict(built)
+    before = list(vars(kept)["_kept"].values())
     runtime.run(program, words, 1)
-    assert built == before
+    assert list(map(id, vars(kept)["_kept"].values())) == list(map(id, before))
+
+
+def test_few_programs_are_kept(target: str, runtime: TimedRuntime, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept: Programs[Any, Any] = Programs(most=2)
+    monkeypatch.setattr(runtime, "_programs", kept)
+    words = every_kind_of_word()
+    first = runtime.prepare(added(target, 0), words, 1)
+    dropped = []
+    for number in range(5):
+        out = runtime.run(added(target, number), words, 1)
+        assert np.array_equal(out, words + np.uint32(number))
+        assert len(kept) <= 2
+        dropped.append(weakref.ref(next(reversed(vars(kept)["_kept"].values()))))
+    assert [reference() is None for reference in dropped[1:]] == [True, True, False, False]
+    first.launch()  # dropped from what is kept, and still held by what was prepared with it
+    assert np.array_equal(first.read(), words)
+    first.release()
+
+
+def test_the_program_not_asked_for_longest_is_dropped() -> None:
+    kept: Programs[str, object] = Programs(most=2)
+    built: list[str] = []
+    for key in ("a", "b", "a", "c", "a", "b"):
+        kept.find(key, lambda key=key: built.append(key))  # type: ignore[misc]
+    assert built == ["a", "b", "c", "b"]
+    assert len(kept) == 2
 
 
 def test_threads_share_a_runtime(target: str, runtime: TimedRuntime) -> None:

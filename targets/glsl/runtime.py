@@ -1,6 +1,8 @@
 """Runs GLSL programs on OpenGL through a context without a window: compute, or fragments on old drivers."""
 
 import importlib
+import weakref
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Literal, ParamSpec, TypeVar
@@ -17,6 +19,7 @@ from targets.lanes import (
     run_in_chunks,
 )
 from targets.packages import first_line, require_package
+from targets.programs import Programs
 from targets.protocol import BuildFailed, Device, Prepared, TargetUnavailable
 from targets.words import Words
 
@@ -58,7 +61,8 @@ class GlslRuntime:
         self._require = require
         self._moderngl = moderngl
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="opengl")
-        self._programs: dict[str, Any] = {}
+        self._programs: Programs[str, Any] = Programs()
+        self._dropped: deque[Any] = deque()
         self._context, self.device = self.on_thread(self._open)
 
     def on_thread(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
@@ -102,12 +106,18 @@ class GlslRuntime:
         )
 
     def _build(self, program: str) -> Any:
-        if program not in self._programs:
-            try:
-                self._programs[program] = self._compile(program)
-            except self._moderngl.Error as error:
-                raise BuildFailed(str(error).strip()) from error
-        return self._programs[program]
+        while self._dropped:
+            self._dropped.popleft().release()
+        try:
+            return self._programs.find(program, lambda: self._tracked(program))
+        except self._moderngl.Error as error:
+            raise BuildFailed(str(error).strip()) from error
+
+    def _tracked(self, program: str) -> Any:
+        """A program that is given back, on the context's thread, once nobody holds it any more."""
+        shader = self._compile(program)
+        weakref.finalize(shader, self._dropped.append, shader.mglo).atexit = False
+        return shader
 
     def _compile(self, program: str) -> Any:
         return self._context.compute_shader(program)

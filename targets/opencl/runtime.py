@@ -20,6 +20,7 @@ from targets.lanes import (
     run_in_chunks,
 )
 from targets.packages import first_line, fits, require_package
+from targets.programs import Programs
 from targets.protocol import BuildFailed, Device, TargetUnavailable
 from targets.words import Words
 
@@ -44,7 +45,7 @@ class OpenclRuntime:
         self._cl = cl
         self._lock = RLock()
         self._options = tuple(options)
-        self._programs: dict[tuple[str, tuple[str, ...]], Any] = {}
+        self._programs: Programs[tuple[str, tuple[str, ...]], Any] = Programs()
         device = _choose_device(cl, os.environ.get(DEVICE_VARIABLE, ""))
         try:
             self._context = cl.Context([device])
@@ -85,13 +86,12 @@ class OpenclRuntime:
         with self._lock, warnings.catch_warnings():
             # A compiler that says something without failing is none of our concern here.
             warnings.simplefilter("ignore", self._cl.CompilerWarning)
-            key = (text, chosen)
-            if key not in self._programs:
-                try:
-                    self._programs[key] = self._cl.Program(self._context, text).build(list(chosen))
-                except self._cl.RuntimeError as error:
-                    raise BuildFailed(_tidy_log(str(error))) from error
-            return self._programs[key]
+            try:
+                return self._programs.find(
+                    (text, chosen), lambda: self._cl.Program(self._context, text).build(list(chosen))
+                )
+            except self._cl.RuntimeError as error:
+                raise BuildFailed(_tidy_log(str(error))) from error
 
 
 class OpenclPrepared:

@@ -18,6 +18,7 @@ from targets.lanes import (
     run_in_chunks,
 )
 from targets.packages import first_line, fits, require_package
+from targets.programs import Programs
 from targets.protocol import BuildFailed, Device, TargetUnavailable
 from targets.words import Words
 
@@ -47,7 +48,7 @@ class WgslRuntime:
     def __init__(self, wgpu: Any, uniforms: bool = False) -> None:
         self._wgpu = wgpu
         self._lock = RLock()
-        self._programs: dict[str, Any] = {}
+        self._programs: Programs[str, Any] = Programs()
         adapter = _choose_adapter(wgpu, os.environ.get(ADAPTER_VARIABLE, ""))
         try:
             self._device = adapter.request_device_sync()
@@ -86,16 +87,17 @@ class WgslRuntime:
                 raise BuildFailed(str(error).strip()) from error
 
     def _build(self, program: str) -> Any:
-        if program not in self._programs:
-            module = self.create_module(program)
-            layout = self._device.create_pipeline_layout(bind_group_layouts=[self._bindings])
-            try:
-                self._programs[program] = self._device.create_compute_pipeline(
-                    layout=layout, compute={"module": module, "entry_point": "harness_main"}
-                )
-            except (self._wgpu.GPUError, self._wgpu.GPUPipelineError) as error:
-                raise BuildFailed(str(error).strip()) from error
-        return self._programs[program]
+        return self._programs.find(program, lambda: self._create_pipeline(program))
+
+    def _create_pipeline(self, program: str) -> Any:
+        module = self.create_module(program)
+        layout = self._device.create_pipeline_layout(bind_group_layouts=[self._bindings])
+        try:
+            return self._device.create_compute_pipeline(
+                layout=layout, compute={"module": module, "entry_point": "harness_main"}
+            )
+        except (self._wgpu.GPUError, self._wgpu.GPUPipelineError) as error:
+            raise BuildFailed(str(error).strip()) from error
 
 
 class WgslPrepared:
