@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from codegen.errors import UserError, nearest
+from codegen.scene.tables import Table, is_number, read_tables, show
 from conformance.picture.brush import Brush
-from conformance.picture.tables import Table, is_number, read_tables, show
 from conformance.picture.visibility import Camera
 
 TABLES = ("scene", "shade", "parameters", "view", "lights", "render")
