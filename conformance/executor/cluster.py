@@ -79,13 +79,17 @@ class Cluster:
 
     def missing(self, target: str) -> str:
         """Empty if a worker can do the target's work; else the sentence that says that none can."""
-        wanted = resource(target, self.source)
+        wanted = self.wanted(target)
         declared = self.resources()
-        if any(wanted in names for names in declared.values()):
+        if any(wanted.keys() <= names.keys() for names in declared.values()):
             return ""
         others = any(name.startswith(f"vair-{target}-") for names in declared.values() for name in names)
         why = "has the same sources and the driver" if others else "has the driver"
         return f"none of {len(declared)} workers {why} of {target}"
+
+    def wanted(self, target: str) -> dict[str, float]:
+        """The resources that the work of a target, or of several, asks of one worker."""
+        return {resource(name, self.source): 1.0 for name in target.split(",")}
 
     def run(self, jobs: Iterable[Job]) -> Iterator[Result]:
         """One result per job; a job whose worker is lost is given to another."""
@@ -120,7 +124,7 @@ class Cluster:
 
     def _submit(self, job: Job) -> Any:
         # The key is the job: the same job asked for twice is done once.
-        wanted = {resource(job.target, self.source): 1}
+        wanted = self.wanted(job.target)
         return self.client.submit(perform, job, key=job.identity, resources=wanted, retries=RETRIES)
 
     def _wait_for_announcements(self) -> None:

@@ -19,6 +19,7 @@ class Job:
     """One piece of work; the same job always gives the same result, wherever and however often it runs.
 
     task         "package.module:function", called with the job; returns plain data (JSON's types)
+    target       whose driver it needs; several are joined by commas: whoever does the job has all of them
     start, stop  the range of the work, in the task's own unit; step: every how many
     options      further numbers and words of the task
     """
@@ -31,6 +32,11 @@ class Job:
     step: int = 1
     seed: int = 0
     options: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        """The targets that it needs."""
+        return tuple(self.target.split(","))
 
     @property
     def identity(self) -> str:
@@ -54,7 +60,9 @@ class Result:
 
 @functools.cache
 def available(target: str) -> str:
-    """Empty if this machine can run the target's work; else the sentence that says why it cannot."""
+    """Empty if this machine can run the work of these targets; else the sentence that says why it cannot."""
+    if "," in target:
+        return "; ".join(filter(None, map(available, target.split(","))))
     if target in DEVICELESS:
         return ""
     if target not in TARGETS:

@@ -20,6 +20,8 @@ BIT_EXACT: tuple[str, ...] = (
 
 GRID = 2.0**-24
 WORD = np.uint64(0xFFFFFFFF)
+REVERSED_HALVES = np.array([int(f"{half:016b}"[::-1], 2) for half in range(1 << 16)], np.uint32)
+"""Numbers of 16 binary digits with these in reverse order."""
 R2_FIRST, R2_SECOND = 3242174889, 2447445413
 """2^32 / g and 2^32 / g^2 for the plastic number g, rounded to odd integers."""
 
@@ -38,11 +40,9 @@ def _times(x: npt.NDArray[np.uint64], factor: int | npt.NDArray[np.uint64]) -> n
 
 def radical_inverse_base2(i: Words) -> Words:
     """The 32 binary digits of i in reverse order."""
-    x = _wide(i)
-    reverse = np.zeros_like(x)
-    for bit in range(32):
-        reverse |= ((x >> np.uint64(bit)) & np.uint64(1)) << np.uint64(31 - bit)
-    return reverse.astype(np.uint32)
+    x = np.asarray(i, dtype=np.uint32)
+    half = np.uint32(16)
+    return np.asarray((REVERSED_HALVES[x & np.uint32(0xFFFF)] << half) | REVERSED_HALVES[x >> half])
 
 
 def unit_float(bits: Words) -> Array:

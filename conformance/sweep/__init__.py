@@ -5,4 +5,5 @@ n-th float, or over a range, gives a *lower bound* of the worst error. The recor
 
 python -m conformance.sweep          sweep; what was done before is not done again
 conformance.sweep.task:run           one piece of a sweep, for the executors
+conformance.sweep.task:run_together  the same piece for several targets, with one reference
 """

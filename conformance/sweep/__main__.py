@@ -14,7 +14,7 @@ from rich.progress import Progress
 from codegen.backends import TARGETS
 from codegen.errors import UserError, unknown
 from codegen.library import load_library
-from conformance.executor import Result, available, open_executor
+from conformance.executor import Job, Result, available, open_executor
 from conformance.sweep.plan import pieces, short
 from conformance.sweep.positions import Positions, order_of, sweepable
 from conformance.sweep.record import RESULTS, Entry, keep, passed
@@ -76,38 +76,44 @@ def run(
         if name not in swept:
             raise unknown("function of one number", name, swept)
     swept = {name: swept[name] for name in names or swept}
-    jobs = []
+    jobs: dict[str, list[Job]] = {name: [] for name in swept}
     for target in targets or TARGETS:
         reason = "" if scheduler else available(target)
         if reason:
             click.echo(f"skipped   {target}: {reason}")
         elif only_short:
-            jobs += short(library, swept, target)
+            for job in short(library, swept, target):
+                jobs[job.function].append(job)
         else:
             for name, where in swept.items():
                 start, stop = places(where, words)
-                jobs += pieces(name, target, where, start, stop, stride)
+                jobs[name] += pieces(name, target, where, start, stop, stride)
     if fresh:
         state.unlink(missing_ok=True)
-    started = time.perf_counter()
+    numbers, well, started = 0, True, time.perf_counter()
+    executor, done_before = open_executor(workers, scheduler), State(state)
     with Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("sweeping", total=len(jobs))
+        task = bar.add_task("sweeping", total=sum(map(len, jobs.values())))
 
         def advance(result: Result) -> None:
             bar.update(task, description=f"{result.job.target} {result.job.function}", advance=1)
 
-        entries, failed = sweep(
-            library, swept, jobs, open_executor(workers, scheduler), State(state), advance
-        )
-    for entry in entries:
-        click.echo(told(entry))
-    for job, reason in failed.items():
-        click.echo(f"FAILED    {job.identity}: {reason}")
-    click.echo(f"{sum(e['numbers'] for e in entries)} numbers, {time.perf_counter() - started:.0f} s")
-    if record and entries and not only_short and words is None:
-        for path in keep(entries, RESULTS):
-            click.echo(f"recorded  {path}")
-    raise SystemExit(1 if failed or not all(map(passed, entries)) else 0)
+        # One function after the other, so that what is found is told and kept even if the sweep is stopped.
+        for asked in jobs.values():
+            entries, failed = sweep(
+                library, swept, asked, executor, done_before, advance, together=scheduler is None
+            )
+            for entry in entries:
+                click.echo(told(entry))
+            for job, reason in failed.items():
+                click.echo(f"FAILED    {job.identity}: {reason}")
+            if record and entries and not only_short and words is None:
+                for path in keep(entries, RESULTS):
+                    click.echo(f"recorded  {path}")
+            numbers += sum(entry["numbers"] for entry in entries)
+            well &= not failed and all(map(passed, entries))
+    click.echo(f"{numbers} numbers, {time.perf_counter() - started:.0f} s")
+    raise SystemExit(0 if well else 1)
 
 
 def places(where: Positions, words: str | None) -> tuple[int, int]:

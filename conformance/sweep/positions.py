@@ -33,11 +33,16 @@ class Positions:
 
     def values(self, start: int, stop: int, step: int = 1) -> npt.NDArray[Any]:
         """The numbers at places start, start + step, ... below stop, as float32 or uint32."""
-        order = self.first + np.arange(start, min(stop, self.count), step, dtype=np.int64)
+        count = max(-(-(min(stop, self.count) - start) // step), 0)
+        offsets = np.arange(count, dtype=np.uint32) * np.uint32(step)
+        order = self.first + start
         if not self.floats:
-            return order.astype(np.uint32)
-        words = np.where(order < 0, (-1 - order) | 0x80000000, order)
-        return words.astype(np.uint32).view(np.float32)
+            return np.uint32(order) + offsets
+        below = min(max(-(order // step), 0), count)  # so many of them are negative
+        offsets[:below] = np.uint32(0x7FFFFFFF - order if below else 0) - offsets[:below]
+        if below < count:
+            offsets[below:] += np.uint32(order % 2**32)
+        return offsets.view(np.float32)
 
     def place(self, value: float) -> int:
         """The place of a number, or of the nearest end of the domain; of +0 for 0."""

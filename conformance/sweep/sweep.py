@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 from codegen.library import Library
 from conformance.executor import Executor, Job, Result
 from conformance.sweep.positions import Positions
 from conformance.sweep.record import Entry, joined
 from conformance.sweep.state import State
+from conformance.sweep.task import TOGETHER
 
 
 def sweep(
@@ -18,10 +20,14 @@ def sweep(
     executor: Executor,
     state: State | None = None,
     progress: Callable[[Result], None] = lambda _: None,
+    together: bool = True,
 ) -> tuple[list[Entry], dict[Job, str]]:
     """One entry per function and target, and the pieces that failed with the reason.
 
-    state  pieces done before are taken from it, finished ones added to it
+    jobs      of one target each
+    state     pieces done before are taken from it, finished ones added to it
+    together  whether the targets of a piece are swept by one worker, which computes the reference once;
+              for workers none of which has the drivers of all targets: no
     """
     sources = {name: library.select([name]).source_hash for name in swept}
     pieces: dict[tuple[str, str], list[tuple[Job, Entry]]] = {}
@@ -38,13 +44,30 @@ def sweep(
         else:
             finished(job, data)
             progress(Result(job, data))
-    for result in executor.run(missing):
+    for result in one_by_one(executor, missing) if together else executor.run(missing):
         progress(result)
-        if result.done:
+        source = sources[result.job.function]
+        if not result.done:
+            failed[result.job] = result.error
+        elif result.data["source"] != source:
+            failed[result.job] = "its source changed while it was swept"
+        else:
             finished(result.job, result.data)
             if state:
-                state.add(result, sources[result.job.function])
-        else:
-            failed[result.job] = result.error
+                state.add(result, source)
     entries = [joined(found, swept[name].count, sources[name]) for (name, _), found in pieces.items()]
     return entries, failed
+
+
+def one_by_one(executor: Executor, jobs: Iterable[Job]) -> Iterator[Result]:
+    """A result per job, where the same piece of several targets is given to the executor as one job."""
+    groups: dict[Job, list[Job]] = {}
+    for job in jobs:
+        groups.setdefault(replace(job, task=TOGETHER, target=""), []).append(job)
+    given = {
+        replace(job, target=",".join(member.target for member in members)): members
+        for job, members in groups.items()
+    }
+    for result in executor.run(given):
+        for job in given[result.job]:
+            yield Result(job, result.data.get(job.target, {}), result.error)

@@ -44,6 +44,8 @@ def test_a_target_without_driver_is_told_not_tried() -> None:
     for executor in (Here(), Processes(2)):
         answers = told(executor.run([*jobs(2), *jobs(1, "metal")]))
         assert sorted(error for _, error in answers.values()) == ["", "", "there is no target metal"]
+    (both,) = Here().run(jobs(1, "numpy,metal"))
+    assert both.error == "there is no target metal"
 
 
 def test_a_process_that_dies_loses_nothing(tmp_path: Path) -> None:
@@ -102,6 +104,8 @@ def test_a_worker_without_the_driver_is_never_given_its_work(on_cluster: Any) ->
     assert both == {"0", "1"}
     (missing,) = on_cluster.run([Job(task, "f", "glsl")])
     assert missing.error == "none of 2 workers has the driver of glsl"
+    (both,) = on_cluster.run([Job(task, "f", "numpy,opencl")])
+    assert both.data["worker"] == "0"
 
 
 def test_a_worker_killed_in_mid_run_loses_nothing(

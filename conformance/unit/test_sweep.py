@@ -8,15 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from codegen.evaluate import evaluate
 from codegen.ir.types import F32
 from codegen.library import load_library
-from conformance.executor import Here, Job, Processes
-from conformance.sweep import record
+from conformance.check import engine
+from conformance.check.engine import Backend
+from conformance.executor import Here, Job, Processes, Result
+from conformance.sweep import judge, record, task
 from conformance.sweep.plan import PIECE, critical, pieces
 from conformance.sweep.positions import Positions, order_of, positions, sweepable
 from conformance.sweep.state import State
 from conformance.sweep.sweep import sweep
-from conformance.sweep.task import CHUNK, TASK, run
+from conformance.sweep.task import BLOCK, CHUNK, TASK, TOGETHER, run, run_together
 
 LIBRARY = load_library()
 SWEPT = sweepable(LIBRARY)
@@ -95,9 +98,111 @@ def test_an_interrupted_sweep_goes_on(tmp_path: Path) -> None:
             return Here().run(jobs)
 
     resumed, failed = sweep(LIBRARY, where, jobs, Counting(), State(path))
-    assert done == jobs[4:]
+    assert [(job.task, job.start) for job in done] == [(TOGETHER, job.start) for job in jobs[4:]]
     assert not failed
     assert resumed == sweep(LIBRARY, where, jobs, Here())[0]
+
+
+def counted(monkeypatch: pytest.MonkeyPatch, where: Any, name: str) -> list[Any]:
+    """The calls of a function from now on."""
+    calls: list[Any] = []
+    function = getattr(where, name)
+
+    def counting(*given: Any) -> Any:
+        calls.append(given)
+        return function(*given)
+
+    monkeypatch.setattr(where, name, counting)
+    return calls
+
+
+def wrong_here_and_there(library: Any, name: str, inputs: Any) -> Any:
+    """What the evaluator gives, with errors, infinities and NaN planted at places that the inputs choose."""
+    x = next(iter(inputs.values()))
+    got = np.array(evaluate(library, name, inputs))
+    mark = x.view(np.uint32) * np.uint32(2654435761) >> np.uint32(16)
+    if got.dtype.kind == "f":
+        for number, wrong in ((1, np.nan), (2, np.inf), (3, 1e3)):
+            got[mark == number] = wrong
+        got[mark % 1024 == 5] *= np.float32(1.0 + 3e-7)
+    else:
+        got[mark == 7] ^= 1
+    return got
+
+
+@pytest.mark.parametrize("name", ["safe_sqrt", "one_minus_exp_neg_rational", "log_one_minus", "unit_float"])
+def test_a_closer_look_finds_nothing_else(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blocks that are counted without one are those in which it would have found nothing."""
+    monkeypatch.setitem(task._backends, "numpy", Backend("numpy", "bad", wrong_here_and_there))
+    where = SWEPT[name]
+    seen = []
+    for start in (where.count // 2, where.count - 20 * BLOCK, max(where.place(0.5) - 5 * BLOCK, 0)):
+        job = Job(TASK, name, "numpy", start, start + 20 * BLOCK)
+        quick = run(job)
+        with monkeypatch.context() as patch:
+            patch.setattr(judge.Judge, "_nothing_new", lambda self, block, got: False)
+            assert run(job) == quick
+        seen.append(quick)
+    assert sum(data["bounds"][0]["failures"] for data in seen) > 0
+    assert sum(data["non_finite"] for data in seen) > 0
+
+
+def test_most_blocks_need_no_closer_look(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_at = counted(monkeypatch, judge.Judge, "_look")
+    start = SWEPT[NAME].place(1.0)
+    run(Job(TASK, NAME, "numpy", start, start + 100 * BLOCK))
+    assert 0 < len(looked_at) < 20
+
+
+def test_targets_swept_together_share_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(task._backends, "first", Backend("first", "one driver", evaluate))
+    monkeypatch.setitem(task._backends, "second", Backend("second", "another", wrong_here_and_there))
+    start = SWEPT[NAME].place(1.0)
+    jobs = [Job(TASK, NAME, target, start, start + 4 * BLOCK) for target in ("first", "second")]
+    alone = [run(job) for job in jobs]
+    assert alone[0]["bounds"] != alone[1]["bounds"]
+    asked = counted(monkeypatch, engine, "expected_of")
+    both = run_together(Job(TOGETHER, NAME, "first,second", start, start + 4 * BLOCK))
+    assert list(both.values()) == alone
+    assert len(asked) == 4
+
+
+def test_a_piece_is_swept_for_those_targets_that_lack_it(tmp_path: Path) -> None:
+    where = {NAME: SWEPT[NAME]}
+    jobs = [Job(TASK, NAME, target, k, k + 9) for target in ("a", "b") for k in (0, 9)]
+    source = LIBRARY.select([NAME]).source_hash
+    given: list[Job] = []
+
+    class Told:
+        def run(self, jobs: Any) -> Any:
+            for job in jobs:
+                given.append(job)
+                counts = {"lanes": 9, "denormal": 0, "non_finite": 0, "not_finite": [], "bounds": []}
+                one = {"driver": "d", "source": source, **counts}
+                failed = "no" if (job.start, job.target) == (0, "a,b") else ""
+                yield Result(job, {} if failed else {target: one for target in job.targets}, failed)
+
+    state = State(tmp_path / "state.jsonl")
+    sweep(LIBRARY, where, jobs[1:2], Told(), state)
+    entries, failed = sweep(LIBRARY, where, jobs, Told(), state)
+    assert [(job.start, job.target) for job in given] == [(9, "a"), (0, "a,b"), (9, "b")]
+    assert failed == {jobs[0]: "no", jobs[2]: "no"}
+    assert [(e["target"], e["numbers"]) for e in entries] == [("a", 9), ("b", 9)]
+
+
+def test_a_piece_of_other_sources_does_not_count(tmp_path: Path) -> None:
+    where, state = {NAME: SWEPT[NAME]}, tmp_path / "state.jsonl"
+    jobs = [Job(TASK, NAME, "numpy", 0, 9)]
+
+    class Changed:
+        def run(self, jobs: Any) -> Any:
+            for result in Here().run(jobs):
+                result.data["numpy"]["source"] = "of tomorrow"
+                yield result
+
+    entries, failed = sweep(LIBRARY, where, jobs, Changed(), State(state))
+    assert not entries and not state.exists()
+    assert failed == {jobs[0]: "its source changed while it was swept"}
 
 
 def test_processes_sweep_as_one_process_does() -> None:
@@ -107,9 +212,6 @@ def test_processes_sweep_as_one_process_does() -> None:
 
 
 def test_a_miss_is_seen_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    from conformance.check.engine import Backend
-    from conformance.sweep import task
-
     def off(library: Any, name: str, inputs: Any) -> Any:
         x = inputs["x"]
         got = np.sqrt(np.maximum(x, 0), dtype=np.float32)
@@ -128,9 +230,6 @@ def test_a_miss_is_seen_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_flushed_denormal_is_no_miss(monkeypatch: pytest.MonkeyPatch) -> None:
-    from conformance.check.engine import Backend
-    from conformance.sweep import task
-
     def flushing(library: Any, name: str, inputs: Any) -> Any:
         x = inputs["x"].astype(np.float64)
         return np.where(np.abs(x) < 2.0**-126, 0.0, -np.expm1(-x)).astype(np.float32)
