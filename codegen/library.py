@@ -28,11 +28,15 @@ def default_root() -> Path:
 
 @dataclass(frozen=True)
 class Selection:
-    """Functions and structs to emit together, dependencies first, and a hash of their sources."""
+    """Functions and structs to emit together, dependencies first, and a hash of their sources.
+
+    names  the functions that were asked for; the others are what these need
+    """
 
     functions: tuple[Function, ...]
     structs: tuple[StructDef, ...]
     source_hash: str
+    names: tuple[str, ...] = ()
 
 
 class Library:
@@ -42,13 +46,25 @@ class Library:
         """Raises UserError or SourceError for sources that cannot be read."""
         self.root = root
         self.resolver = Resolver(root)
+        self._added: dict[str, Function] = {}
+
+    def with_functions(self, functions: Iterable[Function]) -> Library:
+        """This library and further functions that no source holds, made by passes for instance.
+
+        They may call each other and what is here, and stand in for functions of the same name. Emission,
+        execution, evaluation and intervals take them by name like any other.
+        """
+        extended = Library.__new__(Library)
+        extended.root, extended.resolver = self.root, self.resolver
+        extended._added = {**self._added, **{f.name: f for f in functions}}
+        return extended
 
     @functools.cached_property
     def functions(self) -> dict[str, Function]:
         """Every function by name, by section, base before variants and printed forms."""
         self.resolver.parse_all()
         found = [self.resolver.function(name) for name in self.resolver.function_names()]
-        return {f.name: f for f in sorted(found, key=self._order)}
+        return {**{f.name: f for f in sorted(found, key=self._order)}, **self._added}
 
     @functools.cached_property
     def public(self) -> dict[str, Function]:
@@ -57,6 +73,8 @@ class Library:
 
     def function(self, name: str) -> Function:
         """One function; raises UserError with the nearest name if there is none."""
+        if name in self._added:
+            return self._added[name]
         if name not in self.resolver.function_names():
             raise unknown("function", name, self.public)
         return self.resolver.function(name)
@@ -108,7 +126,8 @@ class Library:
         for name in wanted:
             visit(name)
         structs = self._structs_of(ordered.values())
-        return Selection(tuple(ordered.values()), structs, self._hash(ordered.values(), structs))
+        source_hash = self._hash(ordered.values(), structs)
+        return Selection(tuple(ordered.values()), structs, source_hash, tuple(wanted))
 
     def _structs_of(self, functions: Iterable[Function]) -> tuple[StructDef, ...]:
         needed: dict[str, StructDef] = {}
@@ -128,13 +147,16 @@ class Library:
         return tuple(needed.values())
 
     def _hash(self, functions: Iterable[Function], structs: Iterable[StructDef]) -> str:
-        names = [*(f.name for f in functions), *(s.name for s in structs)]
+        added = [f for f in functions if f.name in self._added]
+        names = [*(f.name for f in functions if f not in added), *(s.name for s in structs)]
         files = self.resolver.needed_files(self.resolver.module_of(name) for name in names)
         digest = hashlib.sha256()
         for module in sorted(files):
             digest.update(f"{module}\n{files[module].text}\n".encode())
         for name in sorted(names):
             digest.update("".join(f"{bound}\n" for bound in self.bounds.get(name, ())).encode())
+        for function in sorted(added, key=lambda f: f.name):
+            digest.update(f"{function.name} {function.parameters} {function.body}\n".encode())
         return digest.hexdigest()[:16]
 
     def _order(self, function: Function) -> tuple[int, str, str, int, int]:

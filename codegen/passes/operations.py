@@ -1,0 +1,73 @@
+"""How many operations a function writes down, by cost class; a coarse measure for reports, not of speed.
+
+arithmetic  additions, multiplications, min, max, floor (per component; clamp is two)
+special     divisions, roots, exponentials, logarithms, trigonometry
+select      choices between two values, per component
+compare     comparisons
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from codegen.ir import nodes as ir
+from codegen.ir.types import Vector
+from codegen.library import Library
+from codegen.ops import BUILTINS, OPERATORS
+
+CLASSES = ("arithmetic", "special", "select", "compare")
+WEIGHTS = {"arithmetic": 1, "special": 8, "select": 1, "compare": 1}
+"""Rough relative costs, for decisions that no measurement is worth."""
+_COMPARISONS = frozenset({"<", "<=", ">", ">=", "==", "!="})
+_ARITHMETIC = frozenset({"add", "multiply"})
+
+
+def operations(function: ir.Function, library: Library | None = None) -> dict[str, int]:
+    """Operations by class of one evaluation; every class is there.
+
+    Both sides of branches count, and loop bodies once per iteration. What the function calls counts where a
+    library is given to look it up.
+    """
+    counts: Counter[str] = Counter(dict.fromkeys(CLASSES, 0))
+
+    def tree(e: ir.Expr, times: int) -> None:
+        for x in ir.walk(e):
+            for kind, n in expression_operations(x).items():
+                counts[kind] += n * times
+            if isinstance(x, ir.Call) and library is not None:
+                for kind, n in operations(library.function(x.function), library).items():
+                    counts[kind] += n * times
+
+    def block(body: tuple[ir.Stmt, ...], times: int) -> None:
+        for s in body:
+            match s:
+                case ir.If():
+                    tree(s.condition, times)
+                    block(s.then, times)
+                    block(s.orelse, times)
+                case ir.For():
+                    block(s.body, times * max(s.stop - s.start, 0))
+                case _:
+                    tree(s.value, times)
+
+    block(function.body, 1)
+    return dict(counts)
+
+
+def expression_operations(e: ir.Expr) -> dict[str, int]:
+    """Operations by class of one node, its operands left out."""
+    size = max(t.size if isinstance(t, Vector) else 1 for t in (e.type, *(c.type for c in ir.children(e))))
+    if isinstance(e, ir.Select):
+        return {"select": e.type.size if isinstance(e.type, Vector) else 1}
+    if isinstance(e, ir.Binary) and e.op in _COMPARISONS:
+        return {"compare": 1}
+    if isinstance(e, ir.Builtin) and e.op == "clamp":
+        return {"arithmetic": 2 * size}
+    if not isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
+        return {}
+    row = BUILTINS[e.op] if isinstance(e, ir.Builtin) else OPERATORS[e.op]
+    found: Counter[str] = Counter()
+    for cost, n in row.operations(size).items():
+        if cost != "free":
+            found["arithmetic" if cost in _ARITHMETIC else "special"] += n
+    return dict(found)

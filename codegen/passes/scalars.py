@@ -1,0 +1,72 @@
+"""Components: those of a constructed vector are its operands; vectors stay whole where all parts are used.
+
+before   vec3(a, b, c).y        vec3(v.x, v.y, v.z)     vec3(s, s, s)
+after    b                      v                       vec3(s)
+
+Structs never become values: inlining keeps them as their fields.
+"""
+
+from __future__ import annotations
+
+from codegen.ir import nodes as ir
+from codegen.ir.types import Vector
+from codegen.passes.values import Rewrite, Values
+
+NAME = "scalars"
+EXACT = "exact: components are moved, nothing is computed"
+
+
+def components(values: Values, e: ir.Expr) -> Rewrite | None:
+    """Folds constructions and selections of components."""
+    if isinstance(e, ir.Swizzle):
+        found = _chosen(values, e)
+    elif isinstance(e, ir.Construct) and isinstance(e.type, Vector):
+        found = _joined(values, e)
+    elif isinstance(e, ir.Convert) and e.operand.type == e.type:
+        found = e.operand
+    else:
+        found = None
+    return None if found is None else Rewrite(found, NAME, EXACT)
+
+
+def _chosen(values: Values, e: ir.Swizzle) -> ir.Expr | None:
+    of = e.value
+    assert isinstance(of.type, Vector)
+    if e.components == "xyzw"[: of.type.size]:
+        return of
+    if isinstance(of, ir.Swizzle):
+        inner = "".join(of.components["xyzw".index(c)] for c in e.components)
+        return values.build(ir.Swizzle(e.type, of.value, inner))
+    if isinstance(of, ir.Construct):
+        parts = [_part(values, of, "xyzw".index(c)) for c in e.components]
+        return parts[0] if len(parts) == 1 else values.build(ir.Construct(e.type, tuple(parts)))
+    return None
+
+
+def _part(values: Values, of: ir.Construct, k: int) -> ir.Expr:
+    if len(of.args) == 1:
+        return values.component(of.args[0], k)
+    for a in of.args:
+        size = a.type.size if isinstance(a.type, Vector) else 1
+        if k < size:
+            return values.component(a, k)
+        k -= size
+    raise IndexError(k)
+
+
+def _joined(values: Values, e: ir.Construct) -> ir.Expr | None:
+    assert isinstance(e.type, Vector)
+    if len(e.args) == 1:
+        return e.args[0] if e.args[0].type == e.type else None
+    flat = [_part(values, e, k) for k in range(e.type.size)]
+    if all(a is flat[0] for a in flat):
+        return values.build(ir.Construct(e.type, (flat[0],)))
+    first = flat[0]
+    if isinstance(first, ir.Swizzle) and all(
+        isinstance(a, ir.Swizzle) and a.value is first.value for a in flat
+    ):
+        letters = "".join(a.components for a in flat if isinstance(a, ir.Swizzle))
+        return values.build(ir.Swizzle(e.type, first.value, letters))
+    if any(isinstance(a, ir.Construct) for a in e.args):
+        return values.build(ir.Construct(e.type, tuple(flat)))
+    return None
