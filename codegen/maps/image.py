@@ -1,0 +1,82 @@
+"""Image files to arrays of linear floats and back, through OpenImageIO."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.errors import UserError
+
+Pixels = npt.NDArray[np.float32]
+
+INTEGER_FORMATS = ("uint8", "uint16")
+
+
+def read_pixels(path: Path, *, linear: bool = False) -> Pixels:
+    """The pixels of an image file as (height, width, 3) float32, row 0 at the top.
+
+    One channel is repeated; alpha is left out; integer formats become [0, 1].
+
+    linear  whether sRGB-coded integers are decoded to linear light; float formats are linear already
+
+    raises  UserError for a file that is missing, truncated, deep, or no image
+    """
+    import OpenImageIO as oiio  # noqa: N813  # its own documentation calls it so
+
+    if not path.is_file():
+        raise UserError(f'cannot read "{path}": {"it is a folder" if path.is_dir() else "no such file"}')
+    source = oiio.ImageInput.open(str(path))
+    if source is None:
+        raise UserError(f'cannot read "{path}": {_reason(oiio.geterror())}')
+    spec = source.spec()
+    data = None if spec.deep else source.read_image(oiio.FLOAT)
+    message = source.geterror()
+    source.close()
+    if spec.deep:
+        raise UserError(f'cannot read "{path}": it is a deep image, which has no single value per pixel')
+    if data is None or message:
+        raise UserError(f'cannot read "{path}": {_reason(message)}')
+    pixels = np.asarray(data, np.float32).reshape(spec.height, spec.width, spec.nchannels)
+    colours = pixels[:, :, :3] if spec.nchannels >= 3 else np.repeat(pixels[:, :, :1], 3, axis=2)
+    if linear and str(spec.format) in INTEGER_FORMATS:
+        colours = _decoded(colours)
+    return np.ascontiguousarray(colours)
+
+
+def _reason(message: str) -> str:
+    """The first line of a library's message, as the end of a sentence."""
+    lines = [line.strip() for line in message.splitlines() if line.strip()]
+    return lines[0].rstrip(".") if lines else "the file ends too early or is damaged"
+
+
+def _decoded(code: Pixels) -> Pixels:
+    """Linear light of sRGB code values (IEC 61966-2-1)."""
+    low, high = code / np.float32(12.92), ((code + np.float32(0.055)) / np.float32(1.055)) ** np.float32(2.4)
+    return np.where(code <= np.float32(0.04045), low, high).astype(np.float32)
+
+
+def write_exr(path: Path, pixels: npt.ArrayLike) -> None:
+    """Write (height, width) or (height, width, channels) floats as a 32-bit OpenEXR file, atomically.
+
+    raises  UserError where that is not possible
+    """
+    import OpenImageIO as oiio  # noqa: N813  # its own documentation calls it so
+
+    data = np.atleast_3d(np.asarray(pixels, np.float32))
+    if not path.parent.is_dir():
+        raise UserError(f'cannot write "{path}": the folder "{path.parent}" does not exist')
+    height, width, channels = data.shape
+    spec = oiio.ImageSpec(width, height, channels, oiio.FLOAT)
+    spec.attribute("compression", "zip")
+    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".vair-") as folder:
+        aside = os.path.join(folder, "image.exr")
+        out = oiio.ImageOutput.create(aside)
+        done = out is not None and out.open(aside, spec) and out.write_image(np.ascontiguousarray(data))
+        closed = out is not None and out.close()
+        if not (done and closed):
+            raise UserError(f'cannot write "{path}": {_reason(oiio.geterror())}')
+        os.replace(aside, path)
