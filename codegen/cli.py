@@ -19,6 +19,7 @@ COMMANDS = {
     "show": "codegen.commands.show:command",
     "emit": "codegen.commands.emit:command",
     "doctor": "codegen.commands.doctor:command",
+    "env": "codegen.commands.env:command",
     "check": "conformance.commands.check:command",
     "render": "conformance.commands.render:command",
 }

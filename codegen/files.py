@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from codegen.errors import UserError
@@ -36,6 +37,32 @@ def write_bytes(path: Path, data: bytes) -> None:
         if aside is not None and os.path.exists(aside):
             os.unlink(aside)
         raise UserError(f'cannot write "{path}": {e.strerror}') from None
+
+
+def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write several files into a folder, made if need be, so that either all of them are new or none is.
+
+    They are first written beside the folder; files of other names that lie in it stay.
+
+    raises  UserError where that is not possible
+    """
+    if folder.exists() and not folder.is_dir():
+        raise UserError(f'cannot write into "{folder}": it is a file')
+    parent = folder.resolve().parent
+    if not parent.is_dir():
+        raise UserError(f'cannot make "{folder}": the folder "{parent}" does not exist')
+    try:
+        with tempfile.TemporaryDirectory(dir=parent, prefix=".vair-") as aside:
+            for name, data in files.items():
+                (Path(aside) / name).write_bytes(data)
+            folder.mkdir(exist_ok=True)
+            for name in files:
+                if (folder / name).is_dir():
+                    raise UserError(f'cannot write "{folder / name}": it is a folder')
+            for name in files:
+                os.replace(Path(aside) / name, folder / name)
+    except OSError as e:
+        raise UserError(f'cannot write into "{folder}": {e.strerror}') from None
 
 
 def _umask() -> int:

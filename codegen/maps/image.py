@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -25,8 +26,7 @@ def read_pixels(path: Path, *, linear: bool = False) -> Pixels:
 
     raises  UserError for a file that is missing, truncated, deep, or no image
     """
-    import OpenImageIO as oiio  # noqa: N813  # its own documentation calls it so
-
+    oiio = _library()
     if not path.is_file():
         raise UserError(f'cannot read "{path}": {"it is a folder" if path.is_dir() else "no such file"}')
     source = oiio.ImageInput.open(str(path))
@@ -47,6 +47,14 @@ def read_pixels(path: Path, *, linear: bool = False) -> Pixels:
     return np.ascontiguousarray(colours)
 
 
+def _library() -> Any:
+    try:
+        import OpenImageIO
+    except ImportError:
+        raise UserError("images need the package OpenImageIO; install vair[maps]") from None
+    return OpenImageIO
+
+
 def _reason(message: str) -> str:
     """The first line of a library's message, as the end of a sentence."""
     lines = [line.strip() for line in message.splitlines() if line.strip()]
@@ -59,24 +67,21 @@ def _decoded(code: Pixels) -> Pixels:
     return np.where(code <= np.float32(0.04045), low, high).astype(np.float32)
 
 
-def write_exr(path: Path, pixels: npt.ArrayLike) -> None:
-    """Write (height, width) or (height, width, channels) floats as a 32-bit OpenEXR file, atomically.
+def exr(pixels: npt.ArrayLike) -> bytes:
+    """(height, width) or (height, width, channels) floats as the bytes of a 32-bit OpenEXR file.
 
-    raises  UserError where that is not possible
+    raises  UserError where the library cannot write it
     """
-    import OpenImageIO as oiio  # noqa: N813  # its own documentation calls it so
-
+    oiio = _library()
     data = np.atleast_3d(np.asarray(pixels, np.float32))
-    if not path.parent.is_dir():
-        raise UserError(f'cannot write "{path}": the folder "{path.parent}" does not exist')
     height, width, channels = data.shape
     spec = oiio.ImageSpec(width, height, channels, oiio.FLOAT)
     spec.attribute("compression", "zip")
-    with tempfile.TemporaryDirectory(dir=path.parent, prefix=".vair-") as folder:
-        aside = os.path.join(folder, "image.exr")
-        out = oiio.ImageOutput.create(aside)
-        done = out is not None and out.open(aside, spec) and out.write_image(np.ascontiguousarray(data))
+    with tempfile.TemporaryDirectory(prefix="vair-") as folder:
+        path = os.path.join(folder, "image.exr")
+        out = oiio.ImageOutput.create(path)
+        done = out is not None and out.open(path, spec) and out.write_image(np.ascontiguousarray(data))
         closed = out is not None and out.close()
         if not (done and closed):
-            raise UserError(f'cannot write "{path}": {_reason(oiio.geterror())}')
-        os.replace(aside, path)
+            raise UserError(f"cannot make an OpenEXR file: {_reason(oiio.geterror())}")
+        return Path(path).read_bytes()

@@ -13,7 +13,7 @@ from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.library import load_library
 from codegen.maps import latlong, mipmap, octahedral, paraboloid, prefilter
-from codegen.maps.image import read_pixels, write_exr
+from codegen.maps.image import exr, read_pixels
 from codegen.maps.radiance import read_radiance
 
 DATA = Path(__file__).parents[2] / "examples" / "data"
@@ -52,9 +52,8 @@ def png(folder: Path, code: int) -> Path:
 
 def test_pixels_survive_writing_and_reading(tmp_path: Path) -> None:
     pixels = np.random.default_rng(1).uniform(0.0, 1e4, (5, 7, 3)).astype(np.float32)
-    write_exr(tmp_path / "a.exr", pixels)
+    (tmp_path / "a.exr").write_bytes(exr(pixels))
     assert np.array_equal(read_pixels(tmp_path / "a.exr"), pixels)
-    assert [path.name for path in tmp_path.iterdir()] == ["a.exr"]
 
 
 def test_integers_are_decoded_only_where_light_is_wanted(tmp_path: Path) -> None:
@@ -81,7 +80,7 @@ def test_values_that_are_no_radiance_are_refused_with_count_and_place(tmp_path: 
     pixels = np.ones((4, 8, 3), np.float32)
     pixels[1, 2, 1], pixels[3, 0, 0], pixels[3, 7, 2] = np.nan, -0.5, np.inf
     pixels[0, 0, 0] = 7.0
-    write_exr(tmp_path / "bad.exr", pixels)
+    (tmp_path / "bad.exr").write_bytes(exr(pixels))
     with pytest.raises(
         UserError, match=r"bad\.exr: 3 pixels are no radiance, first row 1, column 2: G = nan"
     ):
