@@ -6,6 +6,7 @@ from collections import Counter
 from typing import Any
 
 from codegen.costs import costs
+from codegen.half import HalfForm, half_forms
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain
 from codegen.ir.nodes import Function
@@ -44,10 +45,20 @@ def describe(library: Library, f: Function) -> list[str]:
             lines.append(f"  {key.ljust(width)}  {text}")
     for bound in library.bounds.get(f.name, ()):
         lines.append(f"  {'error'.ljust(width)}  {bound.describe()} [{bound.origin}]")
+    form = half_forms(library).get(f.name)
+    if form is not None:
+        lines.append(f"  {'half'.ljust(width)}  {half_text(form)}")
     variants = [v.name for v in library.variants(f.name)]
     if variants:
         lines.append(f"  {'variants'.ljust(width)}  {', '.join(variants)}")
     return lines
+
+
+def half_text(form: HalfForm) -> str:
+    """What is known of a function's half form, as one phrase."""
+    if form.refused:
+        return f"none: {form.refused}" + (f"; use {form.instead}" if form.instead else "")
+    return "; ".join(f"{b.describe()} [{b.origin}]" for b in form.bounds)
 
 
 def operations(library: Library, f: Function) -> dict[str, int]:
@@ -118,6 +129,7 @@ def as_data(library: Library, f: Function) -> dict[str, Any]:
             }
             for b in library.bounds.get(f.name, ())
         ],
+        "half": forms[f.name].as_data() if f.name in (forms := half_forms(library)) else None,
         "operations": operations(library, f),
         "cost": costs(library, f),
     }

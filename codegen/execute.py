@@ -8,9 +8,11 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from codegen.backends import dialect
+from codegen.errors import UserError
 from codegen.evaluate.arrays import Array, Value, arithmetic, convert_inputs
-from codegen.ir.types import BOOL, F32, Scalar, Struct, Type, Vector, leaves
-from codegen.kernels import PLAIN, KernelOptions, kernel, literal_cases, literal_kernel
+from codegen.ir.types import BOOL, F16, F32, Scalar, Struct, Type, Vector, element_of, leaves
+from codegen.kernels import PLAIN, KernelOptions, called_type, kernel, literal_cases, literal_kernel
 from codegen.library import Library
 
 Words = npt.NDArray[np.uint32]
@@ -42,15 +44,19 @@ def execute(
 ) -> Value:
     """The function's values over arrays of inputs, computed in float32 by a device.
 
-    Inputs and result have the shapes of codegen.evaluate.evaluate. Raises UserError for bad inputs and the
-    runtime's BuildFailed where the driver refuses the text.
+    Inputs and result have the shapes of codegen.evaluate.evaluate. In half precision inputs are rounded to
+    half here, so that no driver's rounding is in the result, and the result is float32. Raises UserError for
+    bad inputs and the runtime's BuildFailed where the driver refuses the text.
     """
-    function = library.function(name)
+    library.function(name)
+    _check_precision(runtime, options)
+    function = called_type(library, name, options)
     arrays, count = convert_inputs(
         {p.name: p.type for p in function.parameters}, inputs, arithmetic("float32"), name
     )
+    arrays = {p.name: _rounded(p.type, arrays[p.name]) for p in function.parameters}
     if options.source == "literal":
-        out = _execute_literals(library, name, arrays, count, runtime, options)
+        out = _execute_literals(library, name, function.returns, arrays, count, runtime, options)
         return unflatten(function.returns, out)
     program = kernel(library, name, runtime.device.target, options)
     words = flatten([arrays[p.name] for p in function.parameters], count)
@@ -58,16 +64,24 @@ def execute(
     return unflatten(function.returns, out)
 
 
+def _check_precision(runtime: Runtime, options: KernelOptions) -> None:
+    """Raise UserError where a device has no half arithmetic and the target cannot do without."""
+    target = runtime.device.target
+    needed = options.precision == "half" and dialect(target, options.dialect).half_enable
+    if needed and not getattr(runtime, "half_arithmetic", False):
+        raise UserError(f"this device of {target} has no half arithmetic; it refuses {needed}")
+
+
 def _execute_literals(
     library: Library,
     name: str,
+    returns: Type,
     arrays: Mapping[str, Value],
     count: int,
     runtime: Runtime,
     options: KernelOptions,
 ) -> Words:
     """The words of every lane, with its arguments written into the text of a program."""
-    returns = library.function(name).returns
     slots, most = len(leaves(returns)), literal_cases(returns)
     parts = []
     for start in range(0, count, most):
@@ -77,6 +91,18 @@ def _execute_literals(
         out = runtime.run(program, np.empty((0, 1), np.uint32), taken * slots)
         parts.append(out.reshape(taken, slots).T)
     return np.concatenate(parts, axis=1)
+
+
+def _rounded(type_: Type, value: Value) -> Value:
+    """The value with every f16 in it rounded to half, still as float32."""
+    if isinstance(type_, Struct):
+        assert isinstance(value, dict)
+        return {f.name: _rounded(f.type, value[f.name]) for f in type_.fields}
+    if element_of(type_) != F16:
+        return value
+    assert not isinstance(value, dict)
+    with np.errstate(over="ignore"):  # beyond the largest half: infinite
+        return value.astype(np.float16).astype(np.float32)
 
 
 def _lanes(value: Value, start: int, stop: int) -> Value:
@@ -118,7 +144,7 @@ def unflatten(type_: Type, words: Words) -> Value:
             return np.asarray(row != 0)
         return (
             row.view(np.float32)
-            if element == F32
+            if element in (F16, F32)
             else row.view(np.int32 if element.name == "i32" else np.uint32)
         )
 

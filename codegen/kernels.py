@@ -10,13 +10,15 @@ from typing import Any, Literal
 import numpy as np
 
 from codegen.backends import complete_program, dialect
-from codegen.emit.dialect import Dialect, with_precise
-from codegen.emit.module import DEFAULT_PREFIX, emit
+from codegen.emit.dialect import Dialect, with_half, with_precise
+from codegen.emit.module import DEFAULT_PREFIX, HALF_PREFIX, emit
 from codegen.emit.stmt import StmtPrinter
+from codegen.half import half_rules
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, I32, Scalar, Struct, Type, leaves
+from codegen.ir.types import BOOL, F16, F32, I32, Scalar, Struct, Type, leaves
 from codegen.ir.unit import Unit
 from codegen.library import Library
+from codegen.passes.half import half_versions
 from codegen.passes.rename import add_prefix
 
 LITERAL_CASES = 8
@@ -33,6 +35,7 @@ class KernelOptions:
     version  GLSL only: what follows #version, where the dialect's default does not fit the driver
     form     of the harness: plain, pair, uniform or fragment; see targets.harness
     source   where arguments come from: loaded words, or literals in the text
+    precision  "half": the function's half form; words still hold float32, converted on the device
     precise  whether every float local is qualified, see codegen.emit.dialect.with_precise
     prelude  text before the library
     """
@@ -43,6 +46,7 @@ class KernelOptions:
     source: Literal["words", "literal"] = "words"
     precise: bool = False
     prelude: str = ""
+    precision: Literal["single", "half"] = "single"
 
 
 PLAIN = KernelOptions()
@@ -52,7 +56,7 @@ PLAIN = KernelOptions()
 def kernel(library: Library, name: str, target: str, options: KernelOptions = PLAIN) -> str:
     """The complete program that loads a function's arguments, calls it and stores its value."""
     chosen = _dialect(target, options)
-    call = _called(library, name)
+    call = _called(library, name, options)
     lines = _pair(call, chosen) if options.form == "pair" else _single(call, chosen)
     return _complete(library, name, target, options, lines)
 
@@ -69,7 +73,7 @@ def literal_kernel(
 
     The words of call j follow those of call j - 1.
     """
-    function = _called(library, name)
+    function = _called(library, name, options)
     printer = StmtPrinter(_dialect(target, options))
     slots = leaves(function.returns)
     lines = []
@@ -77,7 +81,7 @@ def literal_kernel(
         arguments = [_constant(p.type, inputs[p.name], j) for p in function.parameters]
         call = ir.Call(function.returns, function.name, tuple(arguments))
         lines += printer.block((ir.Let(f"result_{j}", call),), "    ")
-        lines += _stores(function.returns, f"result_{j}", j * len(slots))
+        lines += _stores(function.returns, f"result_{j}", j * len(slots), printer)
     return _complete(library, name, target, options, lines)
 
 
@@ -88,10 +92,20 @@ def literal_cases(type_: Type) -> int:
 
 def _dialect(target: str, options: KernelOptions) -> Dialect:
     chosen = dialect(target, options.dialect)
+    chosen = with_half(chosen) if options.precision == "half" else chosen
     return with_precise(chosen) if options.precise else chosen
 
 
-def _called(library: Library, name: str) -> ir.Function:
+def called_type(library: Library, name: str, options: KernelOptions = PLAIN) -> ir.Function:
+    """The function that a kernel calls, without a prefix: its parameters and result have the types in use."""
+    if options.precision == "half":
+        return half_versions(library, [name], half_rules(library))[-1].function
+    return library.function(name)
+
+
+def _called(library: Library, name: str, options: KernelOptions) -> ir.Function:
+    if options.precision == "half":
+        return add_prefix(Unit((called_type(library, name, options),), ()), HALF_PREFIX).functions[-1]
     selection = library.select([name])
     return add_prefix(Unit(selection.functions, selection.structs), DEFAULT_PREFIX).functions[-1]
 
@@ -102,8 +116,9 @@ def _complete(library: Library, name: str, target: str, options: KernelOptions, 
 
 
 def _single(function: ir.Function, chosen: Dialect) -> list[str]:
-    lines = StmtPrinter(chosen).block((ir.Let("result", _loaded_call(function)),), "    ")
-    return [*lines, *_stores(function.returns, "result", 0)]
+    printer = StmtPrinter(chosen)
+    lines = printer.block((ir.Let("result", _loaded_call(function)),), "    ")
+    return [*lines, *_stores(function.returns, "result", 0, printer)]
 
 
 def _pair(function: ir.Function, chosen: Dialect) -> list[str]:
@@ -113,7 +128,7 @@ def _pair(function: ir.Function, chosen: Dialect) -> list[str]:
     for j in range(2):
         take = f"    harness_take({j}{'' if chosen.target == 'wgsl' else 'u'});"
         calls += [take, *printer.block((ir.Let(f"result_{j}", _loaded_call(function)),), "    ")]
-        stores += [take, *_stores(function.returns, f"result_{j}", 0)]
+        stores += [take, *_stores(function.returns, f"result_{j}", 0, printer)]
     return [*calls, *stores]
 
 
@@ -123,6 +138,8 @@ def _loaded_call(function: ir.Function) -> ir.Call:
     def load(scalar: Scalar) -> ir.Expr:
         nonlocal slot
         slot += 1
+        if scalar == F16:
+            return ir.Convert(F16, ir.Call(F32, "load_f32", (ir.Const(I32, slot - 1),)))
         return ir.Call(scalar, f"load_{scalar.name}", (ir.Const(I32, slot - 1),))
 
     arguments = tuple(_built(p.type, load) for p in function.parameters)
@@ -145,13 +162,18 @@ def _constant(type_: Type, values: Any, lane: int) -> ir.Expr:
 
     def literal(scalar: Scalar) -> ir.Expr:
         value = next(scalars)
-        return ir.Const(scalar, value if scalar == BOOL else float(value) if scalar == F32 else int(value))
+        return ir.Const(
+            scalar, value if scalar == BOOL else float(value) if scalar in (F16, F32) else int(value)
+        )
 
     return _built(type_, literal)
 
 
-def _stores(type_: Type, variable: str, first: int) -> list[str]:
-    return [
-        f"    store_{scalar.name}({first + k}, {variable}{path});"
-        for k, (path, scalar) in enumerate(leaves(type_))
-    ]
+def _stores(type_: Type, variable: str, first: int, printer: StmtPrinter) -> list[str]:
+    def stored(scalar: Scalar, value: str) -> tuple[str, str]:
+        if scalar == F16:
+            return "f32", printer.expr.show(ir.Convert(F32, ir.Var(F16, value)))
+        return scalar.name, value
+
+    words = [stored(scalar, variable + path) for path, scalar in leaves(type_)]
+    return [f"    store_{name}({first + k}, {value});" for k, (name, value) in enumerate(words)]

@@ -46,6 +46,11 @@ class Runtime(Protocol):
         """The device in use."""
         ...
 
+    @property
+    def half_arithmetic(self) -> bool:
+        """Whether the device computes in half precision; mediump of desktop GLSL is full precision."""
+        ...
+
     def run(self, program: str, words: Words, slots_out: int) -> Words:
         """Run a program once per lane.
 

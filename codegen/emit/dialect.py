@@ -30,6 +30,10 @@ class Dialect:
     precise      qualifier of a variable whose computation may be neither reordered nor fused ("" where the
                  dialect has none)
     local        qualifier put before every local that holds floats ("" for none)
+    arithmetic   of what is printed: "single", or "half" where the half pass has run
+    half_precision  precision qualifier put before f16 and its vectors ("" for none)
+    half_suffix  of f16 literals
+    half_enable  line that a text with f16 starts with ("" for none)
     line_map     how a source line is stated, with {line} and {file} ("" where the target has no directive)
     """
 
@@ -49,6 +53,10 @@ class Dialect:
     guard: bool = True
     precise: str = ""
     local: str = ""
+    arithmetic: Literal["single", "half"] = "single"
+    half_precision: str = ""
+    half_suffix: str = ""
+    half_enable: str = ""
     line_map: str = field(default="")
 
 
@@ -57,3 +65,8 @@ def with_precise(dialect: Dialect) -> Dialect:
     if not dialect.precise:
         raise UserError(f"{dialect.title} has no precise qualifier; GLSL has one from 4.00 on")
     return replace(dialect, local=dialect.precise)
+
+
+def with_half(dialect: Dialect) -> Dialect:
+    """The dialect for text in half precision."""
+    return replace(dialect, arithmetic="half")

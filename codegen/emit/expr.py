@@ -57,7 +57,7 @@ class ExprPrinter:
         if isinstance(e, ir.Select) and self.dialect.conditional == "select":
             return "primary"
         if isinstance(e, ir.Convert) and self.dialect.conversions == "cast":
-            return "unary"
+            return "primary" if isinstance(e.type, Vector) else "unary"
         if isinstance(e, ir.Construct):
             cast = self.dialect.vectors if isinstance(e.type, Vector) else self.dialect.structs
             return "primary" if cast == "call" else "unary"
@@ -93,6 +93,8 @@ class ExprPrinter:
     def convert(self, e: ir.Convert) -> str:
         name = self.dialect.types[e.type.name]
         if self.dialect.conversions == "cast":
+            if isinstance(e.type, Vector):
+                return f"convert_{name}({self.show(e.operand)})"
             return f"({name}){self.bare(e.operand, _PRIMARY)}"
         return f"{name}({self.show(e.operand)})"
 

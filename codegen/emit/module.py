@@ -5,32 +5,56 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 
+from codegen.bounds import Bound
 from codegen.emit import comment, wrap
 from codegen.emit.dialect import Dialect
 from codegen.emit.stmt import StmtPrinter
+from codegen.half import check_half, half_forms, half_hash, half_rules
+from codegen.ir.nodes import StructDef
+from codegen.ir.unit import Unit
 from codegen.library import VERSION, Library, Selection
 from codegen.names import check_emitted, check_prefix
 from codegen.passes import run_passes
+from codegen.passes.half import Version, half_structs, half_versions
 
 DEFAULT_PREFIX = "vair_"
+HALF_PREFIX = "vair_half_"
+"""Of text in half precision, so that both stand in one program."""
+
+
+def default_prefix(dialect: Dialect) -> str:
+    """What names start with unless something else is asked for."""
+    return HALF_PREFIX if dialect.arithmetic == "half" else DEFAULT_PREFIX
 
 
 def emit(
-    library: Library, dialect: Dialect, names: Sequence[str] | None = None, prefix: str = DEFAULT_PREFIX
+    library: Library, dialect: Dialect, names: Sequence[str] | None = None, prefix: str | None = None
 ) -> str:
     """The text of one self-contained include.
 
-    names    functions to emit with what they need; None for all public ones
-    prefix   put before every name, structs included
-    raises   UserError for an unknown function or a prefix that cannot start a name
+    names    functions to emit with what they need; None for all public ones (in half precision: that have it)
+    prefix   put before every name, structs included; default_prefix if None
+    raises   UserError for an unknown function, a prefix that cannot start a name, or a function that is of no
+             use in half precision where the dialect asks for that
     """
+    prefix = default_prefix(dialect) if prefix is None else prefix
     check_prefix(prefix)
-    selection = library.select(names)
+    if dialect.arithmetic == "half":
+        usable = [name for name, form in half_forms(library).items() if not form.refused]
+        check_half(library, usable if names is None else names)
+        selection = library.select(usable if names is None else names)
+    else:
+        selection = library.select(names)
     for name in (*(f.name for f in selection.functions), *(s.name for s in selection.structs)):
         check_emitted(prefix + name, prefix)
     body = emit_selection(library, dialect, selection, prefix)
     guard = _guard(dialect, prefix, names)
-    lines = _header(dialect, selection, names, prefix)
+    source_hash = selection.source_hash
+    if dialect.arithmetic == "half":
+        source_hash = half_hash(library, source_hash)
+    lines = _header(dialect, source_hash, names, prefix)
+    if dialect.arithmetic == "half" and dialect.half_enable:
+        lines += ["", dialect.half_enable]
     if dialect.guard:
         lines += ["", f"#ifndef {guard}", f"#define {guard}"]
     lines += ["", *body]
@@ -44,19 +68,39 @@ def emit_selection(library: Library, dialect: Dialect, selection: Selection, pre
     printer = StmtPrinter(dialect)
     public_names = library.resolver.names
     rename = comment.renamer(public_names, prefix)
-    unit = run_passes(selection, prefix, named_results=bool(dialect.local))
+    versions = _versions(library, dialect, selection)
+    unit = Unit(tuple(v.function for v in versions), _structs(dialect, selection))
+    unit = run_passes(unit, prefix, named_results=bool(dialect.local))
     blocks: list[list[str]] = []
     for original, renamed in zip(selection.structs, unit.structs, strict=True):
         blocks.append([*comment.struct_comment(original, rename), *printer.struct(renamed.type)])
-    for source, f in zip(selection.functions, unit.functions, strict=True):
-        bounds = library.bounds.get(source.name, ())
+    for version, f in zip(versions, unit.functions, strict=True):
+        bounds = bounds_of(library, version)
         blocks.append(
-            [*comment.function_comment(source, bounds, dialect.target, rename), *printer.function(f)]
+            [*comment.function_comment(version.source, bounds, dialect.target, rename), *printer.function(f)]
         )
     lines: list[str] = []
     for block in blocks:
         lines += [*block, ""]
     return lines[:-1]
+
+
+def bounds_of(library: Library, version: Version) -> Sequence[Bound]:
+    """What the comment states of a function's error."""
+    if not version.is_half:
+        return library.bounds.get(version.source.name, ())
+    form = half_forms(library).get(version.source.name)
+    return () if form is None else form.bounds
+
+
+def _versions(library: Library, dialect: Dialect, selection: Selection) -> tuple[Version, ...]:
+    if dialect.arithmetic == "half":
+        return half_versions(library, selection.names, half_rules(library))
+    return tuple(Version(f, f, is_half=False) for f in selection.functions)
+
+
+def _structs(dialect: Dialect, selection: Selection) -> tuple[StructDef, ...]:
+    return half_structs(selection.structs) if dialect.arithmetic == "half" else selection.structs
 
 
 def _guard(dialect: Dialect, prefix: str, names: Sequence[str] | None) -> str:
@@ -69,17 +113,26 @@ def _guard(dialect: Dialect, prefix: str, names: Sequence[str] | None) -> str:
     return f"{stem}_{digest}_{dialect.target.upper()}_INCLUDED"
 
 
-def _header(dialect: Dialect, selection: Selection, names: Sequence[str] | None, prefix: str) -> list[str]:
+HALF_NOTE = (
+    "Half precision: an error holds for the range beside it, and for inputs that are halves; outside of it "
+    "nothing is promised. Results are finite inside. Functions that end in _single are the f32 text that "
+    "others need."
+)
+
+
+def _header(dialect: Dialect, source_hash: str, names: Sequence[str] | None, prefix: str) -> list[str]:
     command = f"vair emit --target {dialect.target} --dialect {dialect.name}"
+    if dialect.arithmetic == "half":
+        command += " --precision half"
     if dialect.local:
         command += " --precise"
-    if prefix != DEFAULT_PREFIX:
+    if prefix != default_prefix(dialect):
         command += f" --prefix {prefix}"
     command += "".join(f" --function {name}" for name in names or ())
     return [
         f"// Vair {VERSION}: hair, fur and strand shading functions, {dialect.title}",
         *wrap.comment(f"Generated by {command}; do not edit.", "// ", "//   "),
-        f"// Source hash {selection.source_hash}",
+        f"// Source hash {source_hash}",
         "// SPDX-License-Identifier: MIT",
         "//",
         *wrap.comment(
@@ -89,4 +142,5 @@ def _header(dialect: Dialect, selection: Selection, names: Sequence[str] | None,
             "// ",
             "// ",
         ),
+        *(wrap.comment(HALF_NOTE, "// ", "// ") if dialect.arithmetic == "half" else ()),
     ]

@@ -6,7 +6,7 @@ from codegen.emit import wrap
 from codegen.emit.dialect import Dialect
 from codegen.emit.expr import ExprPrinter
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, Struct, Type, leaves
+from codegen.ir.types import BOOL, F16, F32, Struct, Type, element_of, leaves
 
 _STEP = "    "
 
@@ -21,8 +21,10 @@ class StmtPrinter:
     def type_name(self, type_: Type) -> str:
         """The spelling of a type where something is declared: with the dialect's precision, if it has one."""
         name = self.dialect.types.get(type_.name, type_.name)
-        plain = type_ == BOOL or isinstance(type_, Struct) or not self.dialect.precision
-        return name if plain else f"{self.dialect.precision} {name}"
+        if type_ == BOOL or isinstance(type_, Struct):
+            return name
+        halved = element_of(type_) == F16
+        return f"{self.dialect.half_precision if halved else self.dialect.precision} {name}".lstrip()
 
     def declare(self, name: str, type_: Type) -> str:
         """A parameter or field."""
@@ -100,4 +102,4 @@ class StmtPrinter:
 
 def holds_floats(type_: Type) -> bool:
     """Whether any scalar of the type is a float."""
-    return any(scalar == F32 for _, scalar in leaves(type_))
+    return any(scalar in (F16, F32) for _, scalar in leaves(type_))

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.errors import UserError, nearest, unknown
-from codegen.ir.types import BOOL, F32, I32, U32, Scalar, Struct, Type, Vector
+from codegen.ir.types import BOOL, F16, F32, I32, U32, Scalar, Struct, Type, Vector
 
 Array = npt.NDArray[Any]
 Value = Array | dict[str, "Value"]
@@ -28,9 +28,18 @@ class Arithmetic:
     floats: type[np.generic]
     namespace: Any
     literal: Callable[[float], Any]
+    strict: bool = False
+    """Whether a half that would be denormal is 0 and one that overflows is NaN: what a device may do."""
+
+    @property
+    def is_half(self) -> bool:
+        """Whether the half form of a function is evaluated: f16 rounded to half, f32 to float32."""
+        return self.name.startswith("float16")
 
     def dtype(self, element: Scalar) -> type[np.generic]:
-        return self.floats if element == F32 else INTEGER_TYPES[element]
+        if element == F16 and self.is_half:
+            return np.float16
+        return self.floats if element in (F16, F32) else INTEGER_TYPES[element]
 
 
 def _float_to_bits(x: Array) -> Array:
@@ -52,21 +61,23 @@ def _numpy_namespace(floats: type[np.generic]) -> SimpleNamespace:
 
 
 ARITHMETICS = ("float32", "float64", "mpmath")
+HALF_ARITHMETICS = ("float16", "float16-strict")
+"""Of half forms: as IEEE 754 has it, and with all that a device may do about tiny and huge results."""
 
 
 @functools.cache
 def arithmetic(name: str) -> Arithmetic:
     """An arithmetic by name; raises UserError for an unknown one. mpmath is imported only when asked for."""
-    if name not in ARITHMETICS:
-        raise unknown("arithmetic", name, ARITHMETICS)
+    if name not in (*ARITHMETICS, *HALF_ARITHMETICS):
+        raise unknown("arithmetic", name, (*ARITHMETICS, *HALF_ARITHMETICS))
     if name == "mpmath":
         import mpmath
 
         from codegen.evaluate.precise import namespace
 
         return Arithmetic(name, np.object_, namespace(), mpmath.mpf)
-    floats = np.float32 if name == "float32" else np.float64
-    return Arithmetic(name, floats, _numpy_namespace(floats), floats)
+    floats = np.float64 if name == "float64" else np.float32
+    return Arithmetic(name, floats, _numpy_namespace(floats), floats, strict=name == "float16-strict")
 
 
 def convert_inputs(
@@ -105,11 +116,12 @@ def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Val
         return {n: _convert(f"{where}.{n}", t, given[n], arithmetic) for n, t in fields.items()}
     element = type_.element if isinstance(type_, Vector) else type_
     a = _numbers(where, element, given)
-    if arithmetic.floats is np.object_ and element == F32:
+    if arithmetic.floats is np.object_ and element in (F16, F32):
         a = np.frompyfunc(arithmetic.literal, 1, 1)(a.astype(np.float64) if a.dtype != object else a)
         a = np.asarray(a, dtype=object)
     else:
-        a = a.astype(arithmetic.dtype(element))
+        with np.errstate(over="ignore"):  # a number beyond the largest half becomes infinite
+            a = a.astype(arithmetic.dtype(element))
     shape: tuple[int, ...] = (type_.size,) if isinstance(type_, Vector) else ()
     if a.shape == shape:
         a = a[None]
@@ -125,7 +137,7 @@ def _numbers(where: str, element: Scalar, given: Any) -> Array:
         a = np.asarray(given)
     except ValueError:
         raise UserError(f"{where} is not an array: its rows differ in length") from None
-    allowed = {F32: "fiubO", BOOL: "bO"}.get(element, "iubO")
+    allowed = {F16: "fiubO", F32: "fiubO", BOOL: "bO"}.get(element, "iubO")
     if a.size and a.dtype.kind not in allowed:
         raise UserError(f"{where} holds {a.dtype.name}, but {element.name} is needed")
     if element in (I32, U32) and a.size:

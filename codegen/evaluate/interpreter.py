@@ -7,32 +7,48 @@ an `If` are computed for all lanes and chosen lane by lane; lanes that have retu
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
 from codegen.evaluate.arrays import Arithmetic, Array, Value, choose, convert_inputs
 from codegen.evaluate.arrays import arithmetic as find_arithmetic
+from codegen.half import half_rules
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, I32, U32, Scalar, Struct, Type, Vector
+from codegen.ir.types import F16, F32, I32, U32, Scalar, Struct, Type, Vector, element_of
 from codegen.library import Library
 from codegen.ops import BUILTINS, OPERATORS
+from codegen.passes.half import SMALLEST_NORMAL, HalfRules, half_versions
 
 
-def evaluate(library: Library, name: str, inputs: Mapping[str, Any], arithmetic: str = "float32") -> Value:
+def evaluate(
+    library: Library,
+    name: str,
+    inputs: Mapping[str, Any],
+    arithmetic: str = "float32",
+    *,
+    rules: HalfRules | None = None,
+) -> Value:
     """The function's values over arrays of inputs.
 
     inputs      parameter name -> array: scalars (N,), vectors (N, size), structs as dicts; one value repeats
-    arithmetic  "float32" (op by op), "float64", or "mpmath" (at mpmath's current precision)
+    arithmetic  "float32" (op by op), "float64", "mpmath" (at mpmath's current precision), or the function's
+                half form op by op: "float16", "float16-strict" (denormals are 0, overflow is NaN)
+    rules       of the half form; those of the library if None
     returns     scalars (N,), vectors (N, size), structs as dicts of those
     raises      UserError for unknown functions, parameters or shapes
     """
     chosen = find_arithmetic(arithmetic)
-    function = library.function(name)
+    find: Callable[[str], ir.Function] = library.function
+    if chosen.is_half:
+        library.function(name)
+        versions = half_versions(library, [name], half_rules(library) if rules is None else rules)
+        find = {v.function.name: v.function for v in versions}.__getitem__
+    function = find(name)
     arrays, count = convert_inputs({p.name: p.type for p in function.parameters}, inputs, chosen, name)
     with np.errstate(all="ignore"):  # lanes that a branch does not take may overflow or divide by zero
-        return _Frame(library, chosen, function, arrays, count).run()
+        return _Frame(find, chosen, function, arrays, count).run()
 
 
 class _Frame:
@@ -40,13 +56,13 @@ class _Frame:
 
     def __init__(
         self,
-        library: Library,
+        find: Callable[[str], ir.Function],
         arithmetic: Arithmetic,
         function: ir.Function,
         inputs: dict[str, Value],
         count: int,
     ) -> None:
-        self.library = library
+        self.find = find
         self.arithmetic = arithmetic
         self.function = function
         self.scope: dict[str, Value] = dict(inputs)
@@ -122,7 +138,9 @@ class _Frame:
                 return choose(self.array(e.condition), self.expr(e.if_true), self.expr(e.if_false))
 
     def constant(self, e: ir.Const) -> Array:
-        if e.type == F32:
+        if e.type == F16 and self.arithmetic.is_half:
+            return np.full(self.count, e.value, np.float16)
+        if e.type in (F16, F32):
             value = self.arithmetic.literal(float(e.value))
             filled = np.empty(self.count, self.arithmetic.floats)
             filled.fill(value)
@@ -132,14 +150,18 @@ class _Frame:
 
     def fit(self, type_: Type, value: Any) -> Array:
         """The value in the arithmetic's own dtype: numpy widens in places (comparisons of mpmath numbers)."""
-        element = type_.element if isinstance(type_, Vector) else type_
+        element = element_of(type_)
         assert isinstance(element, Scalar)
-        return np.asarray(value).astype(self.arithmetic.dtype(element), copy=False)
+        fitted = np.asarray(value).astype(self.arithmetic.dtype(element), copy=False)
+        if self.arithmetic.strict and element == F16:
+            kept = np.where(np.abs(fitted) < np.float16(SMALLEST_NORMAL), np.float16(0.0), fitted)
+            return np.where(np.isinf(kept), np.float16(np.nan), kept)
+        return fitted
 
     def call(self, e: ir.Call) -> Value:
-        function = self.library.function(e.function)
+        function = self.find(e.function)
         inputs = {p.name: self.expr(a) for p, a in zip(function.parameters, e.args, strict=True)}
-        return _Frame(self.library, self.arithmetic, function, inputs, self.count).run()
+        return _Frame(self.find, self.arithmetic, function, inputs, self.count).run()
 
     def construct(self, type_: Type, parts: list[Value]) -> Value:
         if isinstance(type_, Struct):
@@ -154,6 +176,8 @@ class _Frame:
         return np.stack(columns, axis=-1)
 
     def convert(self, type_: Type, value: Array) -> Array:
+        if isinstance(type_, Vector):
+            return self.fit(type_, value)
         assert isinstance(type_, Scalar)
         if type_ == F32 and self.arithmetic.name == "mpmath":
             return np.asarray([self.arithmetic.literal(int(x)) for x in value], dtype=object)
@@ -164,4 +188,4 @@ class _Frame:
             return np.asarray(clipped, np.int64).astype(self.arithmetic.dtype(type_))
         if type_ == U32 and value.dtype.kind == "f":
             return value.astype(np.float64).astype(np.int64).astype(np.uint32)
-        return value.astype(self.arithmetic.dtype(type_))
+        return self.fit(type_, value)

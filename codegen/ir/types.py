@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from codegen.ir.domains import Domain
 
 
 @dataclass(frozen=True)
 class Scalar:
-    """A 32-bit scalar (bool: a truth value)."""
+    """A 32-bit scalar (bool: a truth value), or the 16-bit float f16."""
 
     name: str
 
@@ -49,19 +49,45 @@ Type = Scalar | Vector | Struct
 F32, I32, U32, BOOL = Scalar("f32"), Scalar("i32"), Scalar("u32"), Scalar("bool")
 VEC2, VEC3, VEC4 = (Vector(f"vec{n}", F32, n) for n in (2, 3, 4))
 UVEC2, UVEC3 = Vector("uvec2", U32, 2), Vector("uvec3", U32, 3)
+F16 = Scalar("f16")
+HVEC2, HVEC3, HVEC4 = (Vector(f"hvec{n}", F16, n) for n in (2, 3, 4))
 
 VALUE_TYPES: dict[str, Scalar | Vector] = {
     t.name: t for t in (F32, I32, U32, BOOL, VEC2, VEC3, VEC4, UVEC2, UVEC3)
 }
 
 
+HALF_TYPES: dict[str, Scalar | Vector] = {t.name: t for t in (F16, HVEC2, HVEC3, HVEC4)}
+"""Types that no source names: the pass codegen.passes.half makes them of f32 and its vectors."""
+
+_HALVES: dict[Type, Type] = {F32: F16, VEC2: HVEC2, VEC3: HVEC3, VEC4: HVEC4}
+_SINGLES: dict[Type, Type] = {half: single for single, half in _HALVES.items()}
+
+
+def half_of(type_: Type) -> Type:
+    """The type with f16 in place of f32, fields included."""
+    if isinstance(type_, Struct):
+        return Struct(type_.name, tuple(replace(f, type=half_of(f.type)) for f in type_.fields))
+    return _HALVES.get(type_, type_)
+
+
+def single_of(type_: Type) -> Type:
+    """The scalar or vector type with f32 in place of f16."""
+    return _SINGLES.get(type_, type_)
+
+
+def element_of(type_: Type) -> Type:
+    """The scalar that a vector consists of; any other type itself."""
+    return type_.element if isinstance(type_, Vector) else type_
+
+
 def vector_of(element: Scalar, size: int) -> Scalar | Vector | None:
     """The vector type of `size` elements (size 1: the scalar itself); None where there is none."""
     if size == 1:
         return element
-    prefix = {"f32": "vec", "u32": "uvec"}.get(element.name, "?")
-    found = VALUE_TYPES.get(f"{prefix}{size}")
-    return found
+    prefix = {"f32": "vec", "u32": "uvec", "f16": "hvec"}.get(element.name, "?")
+    name = f"{prefix}{size}"
+    return VALUE_TYPES.get(name) or HALF_TYPES.get(name)
 
 
 def leaves(type_: Type, path: str = "") -> list[tuple[str, Scalar]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, I32, U32, Struct, Type, Vector, vector_of
+from codegen.ir.types import BOOL, F16, F32, I32, U32, Struct, Type, Vector, element_of, vector_of
 from codegen.ops import BUILTINS, OPERATORS
 
 
@@ -13,7 +13,8 @@ class MalformedIRError(Exception):
     """A bug in the front end or in a pass."""
 
 
-_PYTHON_TYPES: dict[Type, type] = {BOOL: bool, F32: float, I32: int, U32: int}
+_PYTHON_TYPES: dict[Type, type] = {BOOL: bool, F16: float, F32: float, I32: int, U32: int}
+_NUMBERS = (F16, F32, I32, U32)
 
 Signature = Callable[[str], tuple[tuple[Type, ...], Type] | None]
 
@@ -106,7 +107,7 @@ class _Checker:
                 found = self.signature(e.function)
                 return found[1] if found is not None and found[0] == types else None
             case ir.Convert():
-                return e.type if types[0] in (F32, I32, U32) and e.type in (F32, I32, U32) else None
+                return e.type if self._converts(types[0], e.type) else None
             case ir.Select():
                 same = types[0] == BOOL and types[1] == types[2] and not isinstance(types[1], Struct)
                 return types[1] if same else None
@@ -119,6 +120,13 @@ class _Checker:
                 return vector_of(of.element, len(e.components)) if inside and isinstance(of, Vector) else None
             case ir.Construct():
                 return e.type if self._constructs(e.type, types) else None
+
+    @staticmethod
+    def _converts(given: Type, wanted: Type) -> bool:
+        """Scalar numbers to each other, and float vectors of one size."""
+        if isinstance(given, Vector) and isinstance(wanted, Vector):
+            return given.size == wanted.size and {element_of(given), element_of(wanted)} <= {F16, F32}
+        return given in _NUMBERS and wanted in _NUMBERS
 
     @staticmethod
     def _constructs(type_: Type, parts: tuple[Type, ...]) -> bool:

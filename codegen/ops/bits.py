@@ -27,6 +27,7 @@ BUILTINS = (
         SEE,
         summary="The 32 bits of a float.",
         names=("x",),
+        half=False,
         spell={"glsl": "floatBitsToUint", "wgsl": "bitcast<u32>", "opencl": "as_uint"},
     ),
     Op(
@@ -38,6 +39,7 @@ BUILTINS = (
         SEE,
         summary="The float of these 32 bits, which must be finite.",
         names=("x",),
+        half=False,
         spell={"glsl": "uintBitsToFloat", "wgsl": "bitcast<f32>", "opencl": "as_float"},
     ),
 )

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from codegen.ir.types import Type
+from codegen.ir.types import F16, F32, Type, element_of, half_of, single_of
 from codegen.ops.rules import Rule
 
 Meaning = Callable[..., Any]
@@ -28,6 +28,7 @@ class Op:
     summary   one line for editors (built-ins)
     names     parameter names for editors (built-ins)
     spell     spelling per target where it differs from `name`
+    half      whether the overloads of f32 hold for f16 as well
     work      scalar operations by cost class for vectors of n components, where that is not n times `cost`
     """
 
@@ -41,14 +42,24 @@ class Op:
     names: tuple[str, ...] = ()
     spell: Mapping[str, str] = field(default_factory=dict)
     work: Callable[[int], Mapping[str, int]] | None = None
+    half: bool = True
 
     def operations(self, size: int) -> Mapping[str, int]:
         """Scalar operations by cost class for operands of `size` components."""
         return {self.cost: size} if self.work is None else self.work(size)
 
     def result(self, arguments: tuple[Type, ...]) -> Type | None:
-        """The result type for these argument types; None where no overload fits."""
-        return next((result for types, result in self.rule if types == arguments), None)
+        """The result type for these argument types; None where no overload fits.
+
+        Halves follow the overloads of f32; halves and f32 do not mix.
+        """
+        elements = {element_of(t) for t in arguments}
+        if F16 not in elements:
+            return next((result for types, result in self.rule if types == arguments), None)
+        if F32 in elements or not self.half:
+            return None
+        found = self.result(tuple(map(single_of, arguments)))
+        return None if found is None else half_of(found)
 
     def spelling(self, target: str) -> str:
         """The name in a target's text."""

@@ -6,8 +6,8 @@ from codegen.passes.precise import name_results
 from codegen.passes.rename import add_prefix
 
 
-def run_passes(selection: Selection, prefix: str, *, named_results: bool = False) -> Unit:
-    """The selection made ready to print.
+def run_passes(selection: Selection | Unit, prefix: str, *, named_results: bool = False) -> Unit:
+    """The functions and structs made ready to print.
 
     named_results  whether every returned value gets a local, for dialects that qualify locals
     """

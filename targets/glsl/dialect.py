@@ -12,6 +12,10 @@ _TYPES = {
     "vec4": "vec4",
     "uvec2": "uvec2",
     "uvec3": "uvec3",
+    "f16": "float",
+    "hvec2": "vec2",
+    "hvec3": "vec3",
+    "hvec4": "vec4",
 }
 
 
@@ -24,6 +28,7 @@ def _dialect(name: str, title: str, precision: str = "", precise: str = "") -> D
         types=_TYPES,
         precision=precision,
         precise=precise,
+        half_precision="mediump",
         line_map="#line {line} {file}",
     )
 

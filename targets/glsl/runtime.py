@@ -55,6 +55,9 @@ class GlslRuntime:
     That also keeps the context apart from any other context that a program makes current.
     """
 
+    half_arithmetic = False
+    """mediump of desktop GLSL is accepted and computed in full precision."""
+
     def __init__(self, moderngl: Any, require: int = REQUIRED_VERSION, uniforms: bool = False) -> None:
         self.chunk_bytes = UNIFORM_BYTES if uniforms else CHUNK_BYTES
         self.uniforms = uniforms

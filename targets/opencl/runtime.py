@@ -25,6 +25,7 @@ from targets.protocol import BuildFailed, Device, TargetUnavailable
 from targets.words import Words
 
 DEVICE_VARIABLE = "VAIR_OPENCL_DEVICE"
+HALF_EXTENSION = "cl_khr_fp16"
 PREFERRED_PLATFORM = "Portable Computing Language"
 MISSING_DRIVER = "no OpenCL device is here ({reason}): apt-get install pocl-opencl-icd"
 
@@ -53,6 +54,7 @@ class OpenclRuntime:
         except cl.Error as error:
             raise TargetUnavailable(MISSING_DRIVER.format(reason=first_line(error))) from error
         self.chunk_bytes = min(chunk_bytes, device.max_mem_alloc_size)
+        self.half_arithmetic = HALF_EXTENSION in device.extensions.split()
         self.newest_language = _newest_language(cl, device)
         version, language = " ".join(device.version.split()[:2]), ".".join(map(str, self.newest_language))
         self.device = Device(

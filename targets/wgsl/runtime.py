@@ -28,6 +28,10 @@ MISSING_DRIVER = "no WebGPU adapter is here ({reason}): apt-get install mesa-vul
 PREFERRED_BACKENDS = ("Vulkan", "Metal", "D3D12", "OpenGL")
 PREFERRED_KINDS = ("DiscreteGPU", "IntegratedGPU", "CPU", "Unknown")
 
+HALF_FEATURE = "shader-f16"
+OPTIONAL_FEATURES = {HALF_FEATURE}
+"""Asked for where the adapter has them."""
+
 READ_ONLY, READ_WRITE, UNIFORM = "read-only-storage", "storage", "uniform"
 
 
@@ -51,11 +55,13 @@ class WgslRuntime:
         self._programs: Programs[str, Any] = Programs()
         adapter = _choose_adapter(wgpu, os.environ.get(ADAPTER_VARIABLE, ""))
         try:
-            self._device = adapter.request_device_sync()
+            wanted = sorted(OPTIONAL_FEATURES & set(adapter.features))
+            self._device = adapter.request_device_sync(required_features=wanted)
         except Exception as error:
             raise TargetUnavailable(MISSING_DRIVER.format(reason=first_line(error))) from error
         largest = self._device.limits["max-storage-buffer-binding-size"]
         self.uniforms = uniforms
+        self.half_arithmetic = HALF_FEATURE in wanted
         self.chunk_bytes = UNIFORM_BYTES if uniforms else min(CHUNK_BYTES, largest)
         self.device = _describe(adapter)
         self._bindings = self._device.create_bind_group_layout(
