@@ -17,6 +17,10 @@ from codegen.intervals.values import Range
 
 Ranges = tuple[Range, ...]
 _EPSILON = 2.0**-23
+_NOT_VANISHING = 2.0**-62
+"""Components from here on have squares that do not vanish."""
+_MOST = 1.0 + 16 * _EPSILON
+"""The largest component of a normalised vector, with more than all its roundings."""
 
 
 def dot(context: Context, a: Ranges, b: Ranges) -> Range:
@@ -92,10 +96,14 @@ def normalize(context: Context, x: Ranges) -> Ranges:
         ways: list[Ranges] = []
         if "x / length(x)" in accuracy.formula:
             size = length(context, x)
-            ways.append(tuple(divide(context, context.table.row("/"), c, size) for c in x))
+            vanishing = size.low < _NOT_VANISHING
+            shares = [divide(context, context.table.row("/"), c, size) for c in x]
+            ways.append(tuple(_at_most_one(share, vanishing) for share in shares))
         if "inverse_sqrt" in accuracy.formula:
             factor = inverse_square_root(context, dot(context, x, x))
-            ways.append(tuple(multiply(context, c, factor) for c in x))
+            vanishing = factor.high > 1.0 / _NOT_VANISHING
+            shares = [multiply(context, c, factor) for c in x]
+            ways.append(tuple(_at_most_one(share, vanishing) for share in shares))
         return tuple(reduce(_hull, forms) for forms in zip(*ways, strict=True))
     assert isinstance(accuracy, Ulp)
     ulps = accuracy.ulps + accuracy.per_component * len(x)
@@ -104,6 +112,20 @@ def normalize(context: Context, x: Ranges) -> Ranges:
     vanishes = nearest <= 0.0 if codes is None else (nearest <= 0.0) & (codes == 0)
     codes = context.unbounded(codes, vanishes, "x", "x may be the zero vector")
     return tuple(_normalized(context, k, x, ulps, codes) for k in range(len(x)))
+
+
+def _at_most_one(share: Range, vanishing: Array) -> Range:
+    """A component over the length, cut to what single vectors of the interval give: 1 and its roundings.
+
+    The length of a vector has the square of this component among its terms, which are all positive; ten
+    roundings at most lie between it and the quotient. Only a component whose square vanishes may exceed its
+    share of the length, and only where the length itself may be as small: there nothing is cut.
+    """
+    if share.high.max(initial=0.0) <= _MOST and share.low.min(initial=0.0) >= -_MOST:
+        return share
+    kept = vanishing if share.cause is None else vanishing | (share.cause > 0)
+    low = np.where(kept, share.low, np.maximum(share.low, -_MOST))
+    return Range(low, np.where(kept, share.high, np.minimum(share.high, _MOST)), share.cause)
 
 
 def _normalized(context: Context, k: int, x: Ranges, ulps: float, codes: Codes) -> Range:

@@ -1,5 +1,6 @@
 """The frame of a combed surface."""
 
+from shaderlib.direction.doubled_cross import doubled_cross
 from shaderlib.direction.frame import Frame
 from shaderlib.direction.frame_from_normal import frame_from_normal
 from shaderlib.domains import Direction
@@ -18,5 +19,5 @@ def frame_from_tangent(n: Direction, t: Direction) -> Frame:
                 n, where t - (t.n) n cancels; the tangent is then a product of orthogonal unit vectors
     source      Gram-Schmidt; form derived for this library
     """
-    bitangent = safe_normalize_dot(cross(n - t, n + t), frame_from_normal(n).bitangent)
+    bitangent = safe_normalize_dot(doubled_cross(n, t), frame_from_normal(n).bitangent)
     return Frame(cross(bitangent, n), bitangent, n)

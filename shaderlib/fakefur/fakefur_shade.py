@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from shaderlib.constants import EXP_LIMIT
+from shaderlib.constants import EXP_LIMIT, TWO_PI
 from shaderlib.direction.sin_angle import sin_angle
 from shaderlib.domains import Colour, Cosine, Direction, UnitInterval
 from shaderlib.fakefur.fur_coat import FurCoat
@@ -15,7 +15,7 @@ from shaderlib.fakefur.fur_surface_attenuation import fur_surface_attenuation
 from shaderlib.fakefur.fur_weights import FurWeights
 from shaderlib.fakefur.fur_weights_goldman import fur_weights_goldman, fur_weights_goldman_rational
 from shaderlib.fakefur.fur_weights_slab import fur_weights_slab, fur_weights_slab_rational
-from shaderlib.lang import Interval, atan2, dot, exp, f32, helper, min, printed, variant, vec3
+from shaderlib.lang import Interval, dot, exp, f32, helper, min, printed, variant, vec3
 from shaderlib.numeric.pow_one_minus import (
     LARGEST_DEFECT,
     pow_one_minus,
@@ -25,6 +25,7 @@ from shaderlib.numeric.pow_one_minus import (
 from shaderlib.numeric.safe_pow import safe_pow
 from shaderlib.numeric.safe_smoothstep import safe_smoothstep
 from shaderlib.numeric.safe_sqrt import safe_sqrt
+from shaderlib.numeric.turn_of import turn_of
 from shaderlib.strand.strand_azimuth_cosine import strand_azimuth_cosine
 
 # Linear RGB of a light, in the unit in which the result is wanted.
@@ -227,10 +228,11 @@ def angle_of_cosine(x: Cosine) -> f32:
 
     x        cosine, in [-1, 1]
     returns  acos(x), in [0, pi]
-    form     atan2 of sine and cosine; the built-in acos may err by 6.8e-5 and is undefined above 1
+    form     turn_of sine and cosine; the built-in acos may err by 6.8e-5 and is undefined above 1, and atan2
+             is promised to nothing where either is 0
     source   elementary
     """
-    return atan2(safe_sqrt((1.0 - x) * (1.0 + x)), x)
+    return TWO_PI * turn_of(safe_sqrt((1.0 - x) * (1.0 + x)), x)
 
 
 @printed("fakefur_shade")

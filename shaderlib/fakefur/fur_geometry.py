@@ -1,12 +1,13 @@
 """What the shading of a coat needs of directions, each quantity once."""
 
 from shaderlib.constants import TINY_SQUARE
+from shaderlib.direction.doubled_cross import doubled_cross
 from shaderlib.domains import Cosine, CosineDefect, Direction, UnitInterval
 from shaderlib.fakefur.domains import OpticalDepth
 from shaderlib.fakefur.fur_coat import FurCoat
 from shaderlib.fakefur.fur_hair_area import fur_hair_area
 from shaderlib.fakefur.fur_optical_depth import fur_slab_depth
-from shaderlib.lang import clamp, cross, dot, helper, inverse_sqrt, max, sqrt, struct
+from shaderlib.lang import clamp, dot, helper, inverse_sqrt, max, sqrt, struct
 from shaderlib.strand.strand_azimuth_cosine import SINE_SCALE
 
 
@@ -42,20 +43,21 @@ def fur_geometry(coat: FurCoat, t: Direction, n: Direction, l: Direction, v: Dir
     returns     see FurGeometry; the values are those of strand_angles, strand_azimuth_cosine and
                 fur_optical_depth
     degenerate  t = +-l or t = +-v: that sine, its depth and the azimuth cosine are 0
-    form        (t - l) x (t + l) = 2 t x l keeps its relative accuracy at every angle, and with both cross
-                products at hand sines, azimuth and defect cost less than from cosines, which lose
-                everything near the hair
+    form        doubled_cross keeps its relative accuracy at every angle, and with both cross products at
+                hand sines, azimuth and defect cost less than from cosines, which lose everything near the
+                hair
     source      Goldman 1997, Fake Fur Rendering; forms derived for this library
     """
-    across_l = cross(t - l, t + l)
-    across_v = cross(t - v, t + v)
+    across_l = doubled_cross(t, l)
+    across_v = doubled_cross(t, v)
     square_l = dot(across_l, across_l)
     square_v = dot(across_v, across_v)
     sin_l = 0.5 * sqrt(square_l)
     sin_v = 0.5 * sqrt(square_v)
     # Scaled by powers of two as in strand_azimuth_cosine: the product would vanish from sines of 1e-9 on.
     squares = (SINE_SCALE * square_l) * (SINE_SCALE * square_v)
-    azimuth_cosine = (SINE_SCALE * dot(across_l, across_v)) * inverse_sqrt(max(squares, TINY_SQUARE))
+    together = across_l.x * across_v.x + across_l.y * across_v.y + across_l.z * across_v.z
+    azimuth_cosine = (SINE_SCALE * together) * inverse_sqrt(max(squares, TINY_SQUARE))
     sine_gap = sin_l - sin_v
     cosine_sum = dot(t, l + v)
     defect = 0.5 * (sine_gap * sine_gap + cosine_sum * cosine_sum)

@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from shaderlib.constants import INV_PI, TINY_SQUARE
-from shaderlib.lang import Interval, dot, f32, helper, max, vec3
+from shaderlib.lang import Interval, dot, f32, helper, max, min, vec3
 from shaderlib.lobes.domains import Roughness
 
 
@@ -23,5 +23,5 @@ def ggx_distribution(g: Annotated[vec3, Interval(-2.0, 2.0)], alpha_x: Roughness
     """
     x = g.x / alpha_x
     y = g.y / alpha_y
-    ratio = dot(g, g) / max(x * x + y * y + g.z * g.z, TINY_SQUARE)
+    ratio = min(dot(g, g) / max(x * x + y * y + g.z * g.z, TINY_SQUARE), 1.0)
     return (INV_PI / (alpha_x * alpha_y)) * (ratio * ratio)

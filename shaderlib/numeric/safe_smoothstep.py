@@ -18,13 +18,14 @@ def safe_smoothstep(
     x           where to evaluate
     returns     s s (3 - 2 s) with s = (x - edge0) / (edge1 - edge0) clamped to [0, 1]
     degenerate  edges equal (closer than 1.2e-38): 0 for x below edge0, 1 at and above it
-    form        x - edge0 is clamped to the width before the division, which therefore cannot overflow. The
+    form        the way from edge0 is clamped to the width before the division, which therefore cannot
+                overflow, and the width is positive by itself, so no compiler meets a division by 0. The
                 built-in is undefined for edge0 >= edge1 in GLSL and indeterminate for equal edges in WGSL
     source      GLSL specification, smoothstep; the cases that it leaves open are decided here
     """
     width = edge1 - edge0
-    joined = abs(width) < SMALLEST_NORMAL
-    travelled = clamp(x - edge0, min(width, 0.0), max(width, 0.0))
-    s = travelled / (1.0 if joined else width)
+    size = max(abs(width), SMALLEST_NORMAL)
+    travelled = clamp(x - edge0 if width > 0.0 else edge0 - x, 0.0, size)
+    s = min(travelled / size, 1.0)
     hard = 0.0 if x < edge0 else 1.0
-    return hard if joined else s * s * (3.0 - 2.0 * s)
+    return s * s * (3.0 - 2.0 * s) if abs(width) >= SMALLEST_NORMAL else hard

@@ -1,8 +1,11 @@
 """Concentric map of the square to the disc."""
 
 from shaderlib.domains import UnitSquare
-from shaderlib.lang import abs, vec2
+from shaderlib.lang import abs, max, vec2
 from shaderlib.sampling.eighth_turn import eighth_turn
+
+# Below every |2 u - 1| but 0 for float32 numbers u in [0, 1): the smallest of them is 2^-24.
+HALF_STEP = 2.9802322387695312e-8  # 2^-25
 
 
 def disk_concentric(u: UnitSquare) -> vec2:
@@ -19,5 +22,7 @@ def disk_concentric(u: UnitSquare) -> vec2:
     along_x = abs(a.x) > abs(a.y)
     larger = a.x if along_x else a.y
     smaller = a.y if along_x else a.x
-    p = larger * eighth_turn(smaller / (1.0 if larger == 0.0 else larger))
+    radius = abs(larger)
+    direction = eighth_turn(smaller / max(radius, HALF_STEP))
+    p = vec2(larger * direction.x, radius * direction.y)
     return p if along_x else p.yx

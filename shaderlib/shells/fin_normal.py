@@ -4,7 +4,7 @@ from typing import Annotated
 
 from shaderlib.direction.frame_from_normal import frame_from_normal
 from shaderlib.domains import Direction
-from shaderlib.lang import Length, cross, vec3
+from shaderlib.lang import Length, vec3
 from shaderlib.numeric.safe_normalize import safe_normalize
 
 
@@ -16,7 +16,12 @@ def fin_normal(edge: Annotated[vec3, Length(1.0e-6, 1.0e6)], n: Direction) -> ve
     returns     unit vector along edge x n
     degenerate  edge = 0: a unit vector perpendicular to n; edge parallel to n: any unit vector
     form        one cross product; its direction is as good as the edge is far from n, about 1e-7 /
-                sin(edge, n)
+                sin(edge, n). Written out, because OpenCL promises its built-in to the longest component only
     source      Lengyel et al. 2001, Real-Time Fur over Arbitrary Surfaces
     """
-    return safe_normalize(cross(edge, n), frame_from_normal(n).tangent)
+    across = vec3(
+        edge.y * n.z - edge.z * n.y,
+        edge.z * n.x - edge.x * n.z,
+        edge.x * n.y - edge.y * n.x,
+    )
+    return safe_normalize(across, frame_from_normal(n).tangent)

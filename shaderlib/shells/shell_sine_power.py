@@ -1,8 +1,9 @@
 """Power of the sine between a hair and a direction."""
 
 from shaderlib.constants import EXP_LIMIT, SMALLEST_NORMAL
+from shaderlib.direction.doubled_cross import doubled_cross
 from shaderlib.domains import Direction, Exponent
-from shaderlib.lang import cross, dot, exp, f32, helper, log, max, min
+from shaderlib.lang import dot, exp, f32, helper, log, max, min
 from shaderlib.numeric.log_one_minus import log_one_minus
 
 
@@ -22,7 +23,7 @@ def shell_sine_power(n: Direction, w: Direction, p: Exponent) -> f32:
     source      derived for this library
     """
     c = dot(n, w)
-    across = cross(n - w, n + w)
+    across = doubled_cross(n, w)
     sine_square = 0.25 * dot(across, across)
     log_across = log_one_minus(min(c * c, 0.5))
     log_along = log(max(sine_square, SMALLEST_NORMAL))

@@ -1,6 +1,7 @@
 """On which side of a strand light and viewer are."""
 
 from shaderlib.constants import TINY_SQUARE
+from shaderlib.direction.doubled_cross import doubled_cross
 from shaderlib.domains import Direction
 from shaderlib.lang import clamp, cross, dot, f32, inverse_sqrt, max, variant
 
@@ -19,14 +20,15 @@ def strand_azimuth_cosine(t: Direction, l: Direction, v: Direction) -> f32:
     degenerate  l or v along t (a sum-difference cross product is zero): 0. Accurate for sines from 1e-15
                 each; below a product of sines of 2.4e-38 it fades to 0
     form        cosine between (t - l) x (t + l) and (t - v) x (t + v), which are 2 t x l and 2 t x v without
-                cancellation, by one inverse root. The cosine of plain cross products is 4e-4 off at 1e-4
-                rad, the form (l.v - cos_l cos_v) / (sin_l sin_v) anything
+                cancellation, by one inverse root. Their inner product is written out: OpenCL promises its
+                built-in relative to the longer of the two only. The cosine of plain cross products is 4e-4
+                off at 1e-4 rad, the form (l.v - cos_l cos_v) / (sin_l sin_v) anything
     source      Goldman 1997, relative directionality; form derived for this library
     """
-    a = cross(t - l, t + l)
-    b = cross(t - v, t + v)
+    a = doubled_cross(t, l)
+    b = doubled_cross(t, v)
     squares = (SINE_SCALE * dot(a, a)) * (SINE_SCALE * dot(b, b))
-    kappa = (SINE_SCALE * dot(a, b)) * inverse_sqrt(max(squares, TINY_SQUARE))
+    kappa = (SINE_SCALE * (a.x * b.x + a.y * b.y + a.z * b.z)) * inverse_sqrt(max(squares, TINY_SQUARE))
     return clamp(kappa, -1.0, 1.0)
 
 

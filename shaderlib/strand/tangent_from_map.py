@@ -1,9 +1,10 @@
 """Tangent of a brushed surface from a texture."""
 
+from shaderlib.constants import TINY_SQUARE
 from shaderlib.direction.frame_from_tangent import frame_from_tangent
 from shaderlib.domains import Direction, MapTangent
-from shaderlib.lang import vec3
-from shaderlib.numeric.safe_normalize import safe_normalize
+from shaderlib.lang import dot, inverse_sqrt, max, vec2, vec3
+from shaderlib.numeric.safe_normalize import SCALE_UP
 
 
 def tangent_from_map(n: Direction, t: Direction, map_tangent: MapTangent) -> vec3:
@@ -16,9 +17,12 @@ def tangent_from_map(n: Direction, t: Direction, map_tangent: MapTangent) -> vec
     returns      the texel's direction in the surface, a unit vector orthogonal to n
     degenerate   texel without x and y: T; t along n: as frame_from_tangent
     form         Gram-Schmidt of m = x T + y B + z n against n leaves x T + y B, so z is never added and
-                 subtracted again
+                 subtracted again. T and B are orthogonal unit vectors: the two coordinates are normalised
+                 instead of the sum, with one exact power of two against vanishing squares
     source       Isidoro and Brennan 2002, Per-Pixel Strand Based Anisotropic Lighting
     """
     frame = frame_from_tangent(n, t)
-    combed = map_tangent.x * frame.tangent + map_tangent.y * frame.bitangent
-    return safe_normalize(combed, frame.tangent)
+    texel = SCALE_UP * vec2(map_tangent.x, map_tangent.y)
+    squared = dot(texel, texel)
+    unit = inverse_sqrt(max(squared, TINY_SQUARE)) * texel if squared > TINY_SQUARE else vec2(1.0, 0.0)
+    return unit.x * frame.tangent + unit.y * frame.bitangent
