@@ -41,7 +41,8 @@ def constants(values: Values, e: ir.Expr) -> Rewrite | None:
         return None
     element = e.type.element if isinstance(e.type, Vector) else e.type
     assert isinstance(element, Scalar)
-    numbers = [_number(element, x) for x in np.atleast_1d(found).ravel().tolist()]
+    with np.errstate(over="ignore"):
+        numbers = [_number(element, x) for x in np.atleast_1d(found).ravel().tolist()]
     if any(n is None for n in numbers):
         return None
     parts = tuple(values.build(ir.Const(element, n)) for n in numbers if n is not None)

@@ -1,4 +1,4 @@
-"""Guards that ranges prove idle: minima, maxima, clamps, absolute values, comparisons, constant values.
+"""Guards that ranges prove idle: minima, maxima, clamps, absolute values, comparisons.
 
 before   max(cosine, 1e-12)      with cosine in [0.05, 1]
 after    cosine
@@ -9,7 +9,7 @@ The proof is the range, which holds on every target (codegen.passes.ranges), and
 from __future__ import annotations
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, Scalar, Vector
+from codegen.ir.types import BOOL
 from codegen.passes.ranges import Bounds, Ranges
 from codegen.passes.values import Rewrite, Rule, Values, constant_components
 
@@ -30,7 +30,7 @@ def guards(ranges: Ranges) -> Rule:
                 return _magnitude(values, ranges, a)
             case ir.Binary() if e.op in _COMPARISONS:
                 return _comparison(values, ranges, e)
-        return _constant(values, ranges, e)
+        return None
 
     return rule
 
@@ -57,6 +57,10 @@ def _clamp(values: Values, ranges: Ranges, e: ir.Builtin) -> Rewrite | None:
         return Rewrite(x, NAME, f"{_proof(values, ranges, x)}, inside the ends")
     if not _below(ranges, low, high):
         return None  # with crossed ends targets differ
+    if _below(ranges, high, x):
+        return Rewrite(high, NAME, _proof(values, ranges, x, high))
+    if _below(ranges, x, low):
+        return Rewrite(low, NAME, _proof(values, ranges, x, low))
     if above:
         limited = values.build(ir.Builtin(e.type, "min", (x, high)))
         return Rewrite(limited, NAME, _proof(values, ranges, x, low))
@@ -81,22 +85,6 @@ def _comparison(values: Values, ranges: Ranges, e: ir.Binary) -> Rewrite | None:
         return None
     decided = values.number(found.low == 1.0, BOOL)
     return Rewrite(decided, NAME, _proof(values, ranges, e.left, e.right))
-
-
-def _constant(values: Values, ranges: Ranges, e: ir.Expr) -> Rewrite | None:
-    """A float that is one number on every target."""
-    element = e.type.element if isinstance(e.type, Vector) else e.type
-    if element != F32 or not ir.children(e) or constant_components(e) is not None:
-        return None
-    if isinstance(e, ir.Construct | ir.Swizzle | ir.Member | ir.Call):
-        return None
-    found = ranges.bounds(e)
-    if not all(b.finite and b.low == b.high for b in found):
-        return None
-    assert isinstance(element, Scalar)
-    parts = tuple(values.number(b.low, element) for b in found)
-    value = values.build(ir.Construct(e.type, parts)) if isinstance(e.type, Vector) else parts[0]
-    return Rewrite(value, NAME, "its range is this one number on every target")
 
 
 def _proof(values: Values, ranges: Ranges, *of: ir.Expr) -> str:

@@ -35,7 +35,7 @@ class Row:
     replacement  what it becomes
     kind         exact, finite, real or unit
     note         why it is sound
-    when         conditions on names, "condition name", see CONDITIONS
+    when         conditions on names, "condition name ...", see CONDITIONS
     """
 
     pattern: str
@@ -78,6 +78,10 @@ ROWS = (
     Row("max(x, max(x, y))", "max(x, y)", "exact", "the result is an operand"),
     Row("min(a, min(b, x))", "min(min(a, b), x)", "exact", "an operand, in any order", CONSTANTS),
     Row("max(a, max(b, x))", "max(max(a, b), x)", "exact", "an operand, in any order", CONSTANTS),
+    Row("min(x, a) < b", "x < b", "exact", "what min cuts off is not below b either", ("above a b",)),
+    Row("min(x, a) <= b", "x <= b", "exact", "what min cuts off is not below b either", ("above a b",)),
+    Row("max(x, b) > a", "x > a", "exact", "what max cuts off is not above a either", ("above a b",)),
+    Row("max(x, b) >= a", "x >= a", "exact", "what max cuts off is not above a either", ("above a b",)),
     # Magnitudes, roots
     Row("abs(abs(x))", "abs(x)", "exact", "a sign"),
     Row("abs(-x)", "abs(x)", "exact", "a sign"),
@@ -156,11 +160,16 @@ def _nonzero(values: Values, ranges: Ranges, e: ir.Expr) -> bool:
     return all(b.low > 0.0 or b.high < 0.0 for b in ranges.bounds(e))
 
 
-CONDITIONS: dict[str, Callable[[Values, Ranges, ir.Expr], bool]] = {
+def _above(values: Values, ranges: Ranges, a: ir.Expr, b: ir.Expr) -> bool:
+    return isinstance(a, ir.Const) and isinstance(b, ir.Const) and a.value > b.value
+
+
+CONDITIONS: dict[str, Callable[..., bool]] = {
     "power_of_two": _power_of_two,
     "constant": _constant,
     "unit": _unit,
     "nonzero": _nonzero,
+    "above": _above,
 }
 
 
@@ -185,5 +194,5 @@ def identities(ranges: Ranges, kinds: frozenset[str]) -> Rule:
 
 
 def _holds(values: Values, ranges: Ranges, condition: str, found: patterns.Found) -> bool:
-    test, name = condition.split()
-    return CONDITIONS[test](values, ranges, found[name])
+    test, *names = condition.split()
+    return CONDITIONS[test](values, ranges, *(found[name] for name in names))

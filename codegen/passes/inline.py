@@ -51,8 +51,18 @@ class Inliner:
 
     def flow(self, function: ir.Function, arguments: Scope) -> Flow:
         """The flow of a function for these arguments."""
-        result = self.function(function, arguments)
+        result = self.replaced(function, arguments)
+        if result is None:
+            result = self.function(function, arguments)
         return Flow(self.items, result)
+
+    def replaced(self, function: ir.Function, arguments: Scope) -> Value | None:
+        """What a rule makes of a whole call; None where none applies."""
+        for rule in self.calls:
+            found = rule(self.values, function, arguments)
+            if found is not None:
+                return found
+        return None
 
     def function(self, function: ir.Function, arguments: Scope) -> Value:
         """The value of a call."""
@@ -245,10 +255,9 @@ class Inliner:
         bound = {
             p.name: self.named(a, p.name, PARAMETER) for p, a in zip(function.parameters, given, strict=True)
         }
-        for rule in self.calls:
-            replaced = rule(self.values, function, bound)
-            if replaced is not None:
-                return replaced
+        replaced = self.replaced(function, bound)
+        if replaced is not None:
+            return replaced
         return self.named(self.function(function, bound), function.name, CALL)
 
 

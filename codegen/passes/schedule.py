@@ -19,22 +19,6 @@ def statements(values: Values, flow: Flow, returns: Type, parameters: dict[str, 
     return _Writer(values, placement, parameters).body(flow.items, result)
 
 
-def needed_parameters(values: Values, flow: Flow, returns: Type) -> list[str]:
-    """The paths of the parameters that the flow uses."""
-    assert flow.result is not None
-    found: dict[str, None] = {}
-    seen: set[int] = set()
-    waiting = [*roots(flow.items), joined(values, returns, flow.result)]
-    while waiting:
-        e = waiting.pop()
-        if id(e) not in seen:
-            seen.add(id(e))
-            waiting += ir.children(e)
-            if isinstance(e, ir.Var) and e.name in values.parameters:
-                found[e.name] = None
-    return [path for path in values.parameters if path in found]
-
-
 class _Writer:
     def __init__(self, values: Values, placement: Placement, parameters: dict[str, str]) -> None:
         self.values = values

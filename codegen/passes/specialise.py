@@ -20,6 +20,8 @@ from codegen.ir.types import Struct, Type
 from codegen.library import Library
 from codegen.names import reserved
 from codegen.passes.axes import zero_components
+from codegen.passes.dead import pruned, used_parameters
+from codegen.passes.flow import roots
 from codegen.passes.fold import constants as fold_constants
 from codegen.passes.guards import guards
 from codegen.passes.identities import identities
@@ -27,10 +29,10 @@ from codegen.passes.inline import Inliner
 from codegen.passes.powers import whole_exponents
 from codegen.passes.ranges import Ranges
 from codegen.passes.scalars import components
-from codegen.passes.schedule import needed_parameters, statements
+from codegen.passes.schedule import statements
 from codegen.passes.subject import Fact, Subject
 from codegen.passes.sums import cancelled
-from codegen.passes.values import Rule, Step, Values, constant_components
+from codegen.passes.values import Rule, Step, Values, constant_components, leaves
 
 EXACT_KINDS = ("exact", "finite", "real")
 """Kinds of identities that are applied unless others are asked for; see codegen.passes.identities."""
@@ -139,8 +141,9 @@ def specialise(
         (whole_exponents(powers),) if powers else (),
         checked(library, variants),
     )
-    flow = inliner.flow(function, arguments)
-    left = needed_parameters(values, flow, function.returns)
+    flow = pruned(inliner.flow(function, arguments))
+    assert flow.result is not None
+    left = used_parameters(values, [*roots(flow.items), *leaves(flow.result)])
     names = _parameter_names(left, function)
     body = statements(values, flow, function.returns, names)
     dropped = [path for path in values.parameters if path not in left]

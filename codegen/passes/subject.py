@@ -180,9 +180,8 @@ class Subject:
         """A fact as a value with its ends."""
         where = f'{self.function.name}: fact "{fact.expression}"'
         if fact.low > fact.high:
-            raise UserError(
-                f"{where}: at least {number(fact.low)} and at most {number(fact.high)} is nothing"
-            )
+            ends = number(fact.low), number(fact.high)
+            raise UserError(f"{where}: nothing is at least {ends[0]} and at most {ends[1]}")
         try:
             pattern = patterns.parse(fact.expression)
             names: dict[str, ir.Expr] = {}

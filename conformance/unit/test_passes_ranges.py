@@ -1,0 +1,156 @@
+"""Range analysis is sound: no value of any subexpression leaves its range, on any input.
+
+Plan. A function is taken apart into its values without simplifying anything; a probe returns all of them at
+once, evaluated in float32 at random points, at the ends of the domains and at the families of hard cases.
+Every one lies in its range. Facts narrow what they speak of, and only that; what nothing is known of has no
+range. By default a sample of the functions, all of them nightly.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from codegen.evaluate import evaluate
+from codegen.ir import nodes as ir
+from codegen.ir.domains import Interval
+from codegen.ir.types import BOOL, F32, VEC3, Field, Struct
+from codegen.library import load_library
+from codegen.passes.inline import Inliner, joined
+from codegen.passes.norms import norm
+from codegen.passes.ranges import Ranges
+from codegen.passes.regions import place
+from codegen.passes.scalars import components
+from codegen.passes.subject import Fact, Subject
+from codegen.passes.values import Values
+from conformance.cases.drawing import draw, families_for
+
+LIBRARY = load_library()
+LANES = 600
+SEED = 20261122
+NAMES = sorted(LIBRARY.public)
+SAMPLE = sorted({"fakefur_shade", "safe_normalize", "pcg_hash", "latlong_uv", "brushed_shade", *NAMES[::16]})
+"""Directions, guards, integers, angles, and one of every sixteen."""
+
+
+def probe(name: str) -> tuple[Values, list[ir.Expr], ir.Function]:
+    """The values of a function, unsimplified, and a function that returns them all."""
+    function = LIBRARY.function(name)
+    values = Values(rules=(components,))
+    subject = Subject(function)
+    flow = Inliner(LIBRARY, values).flow(function, subject.arguments(values))
+    assert flow.result is not None
+    order = place(flow, joined(values, function.returns, flow.result)).order[::-1]
+    wanted = [e for e in order if not isinstance(e.type, Struct) and ir.children(e)]
+    names = {id(e): f"part{k}" for k, e in enumerate(wanted)}
+
+    def text(e: ir.Expr) -> ir.Expr:
+        parts = (ir.Var(c.type, names[id(c)]) if id(c) in names else text(c) for c in ir.children(e))
+        return (
+            ir.Var(e.type, e.name.replace(".", "_")) if isinstance(e, ir.Var) else ir.rebuild(e, tuple(parts))
+        )
+
+    shape = Struct("Parts", tuple(Field(names[id(e)], e.type) for e in wanted))
+    body = [ir.Let(names[id(e)], text(e)) for e in wanted]
+    result = ir.Construct(shape, tuple(ir.Var(e.type, names[id(e)]) for e in wanted))
+    parameters = tuple(replace(p, name=path.replace(".", "_")) for path, p in values.parameters.items())
+    made = replace(
+        function, name="probe", parameters=parameters, returns=shape, body=(*body, ir.Return(result))
+    )
+    return values, wanted, made
+
+
+def flat(inputs: dict[str, object], path: str = "") -> dict[str, object]:
+    found: dict[str, object] = {}
+    for name, value in inputs.items():
+        if isinstance(value, dict):
+            found |= flat(value, f"{path}{name}_")
+        else:
+            found[f"{path}{name}"] = value
+    return found
+
+
+def check(name: str) -> None:
+    values, wanted, made = probe(name)
+    ranges = Ranges(values)
+    library = LIBRARY.with_functions([made])
+    narrow = 0
+    for family in [*families_for(LIBRARY.function(name).parameters), "uniform"]:
+        inputs = draw(LIBRARY.function(name), family, LANES, SEED)
+        got = evaluate(library, "probe", flat(inputs), "float32")
+        assert isinstance(got, dict)
+        for e, value in zip(wanted, got.values(), strict=True):
+            columns = np.asarray(value, np.float64).reshape(LANES, -1).T
+            for bound, column in zip(ranges.bounds(e), columns, strict=True):
+                narrow += bound.finite
+                outside = (column < bound.low) | (column > bound.high)
+                assert not outside.any() or not bound.finite, (
+                    f"{name}, {family}, seed {SEED}: {values.show(e)} = {column[outside][0]} outside {bound}"
+                )
+    assert narrow or not wanted
+
+
+@pytest.mark.parametrize("name", SAMPLE)
+def test_no_value_leaves_its_range(name: str) -> None:
+    check(name)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", NAMES)
+def test_no_value_leaves_its_range_in_any_function(name: str) -> None:
+    check(name)
+
+
+def known(**domains: tuple[float, float]) -> tuple[Values, Ranges, dict[str, ir.Expr]]:
+    """Float parameters with ranges, as values."""
+    parameters = tuple(ir.Parameter(n, F32, Interval(*ends)) for n, ends in domains.items())
+    values = Values(parameters={p.name: p for p in parameters})
+    return values, Ranges(values), {p.name: values.intern(ir.Var(F32, p.name)) for p in parameters}
+
+
+def test_product_with_itself_is_a_square() -> None:
+    values, ranges, given = known(x=(-2.0, 3.0), y=(-2.0, 3.0))
+    square = values.binary("*", given["x"], given["x"])
+    other = values.binary("*", given["x"], given["y"])
+    assert ranges.bounds(square)[0].low == 0.0
+    assert ranges.bounds(other)[0].low == pytest.approx(-6.0, rel=1e-6)
+
+
+def test_division_by_what_may_be_zero_has_no_range() -> None:
+    values, ranges, given = known(x=(1.0, 2.0), y=(0.0, 3.0))
+    assert not ranges.bounds(values.binary("/", given["x"], given["y"]))[0].finite
+
+
+def test_directions_know_their_length() -> None:
+    function = LIBRARY.function("sin_angle")
+    values = Values()
+    Subject(function).arguments(values)
+    a, b = (values.intern(ir.Var(VEC3, p.name)) for p in function.parameters)
+    ranges = Ranges(values)
+    dot = values.build(ir.Builtin(F32, "dot", (a, b)))
+    assert ranges.bounds(dot)[0].high == pytest.approx(1.0, abs=1e-5)
+    across = values.build(ir.Builtin(VEC3, "cross", (values.binary("-", a, b), values.binary("+", a, b))))
+    assert norm(values, across) == pytest.approx(2.0, abs=1e-4)
+    assert math.isinf(norm(values, values.build(ir.Construct(VEC3, (dot,)))))
+
+
+def test_fact_narrows_either_order_and_nothing_else() -> None:
+    function = LIBRARY.function("sin_angle")
+    values = Values()
+    subject = Subject(function)
+    subject.arguments(values)
+    first, second = (p.name for p in function.parameters)
+    ranges = Ranges(values)
+    ranges.add_fact(*subject.fact(values, Fact(f"dot({second}, {first})", 0.25)))
+    a, b = (values.intern(ir.Var(VEC3, name)) for name in (first, second))
+    assert ranges.bounds(values.build(ir.Builtin(F32, "dot", (a, b))))[0].low == pytest.approx(0.25, abs=1e-5)
+    assert ranges.bounds(values.build(ir.Builtin(F32, "dot", (a, a))))[0].low < 0.25
+
+
+def test_truth_value_of_a_decided_comparison() -> None:
+    values, ranges, given = known(x=(1.0, 2.0), y=(2.5, 3.0))
+    (decided,) = ranges.bounds(values.binary("<", given["x"], given["y"], BOOL))
+    assert (decided.low, decided.high) == (1.0, 1.0)
