@@ -2,6 +2,7 @@
 
 from codegen.ir.unit import Unit
 from codegen.library import Selection
+from codegen.passes.decided import drop_decided
 from codegen.passes.precise import name_results
 from codegen.passes.rename import add_prefix
 
@@ -11,7 +12,7 @@ def run_passes(selection: Selection | Unit, prefix: str, *, named_results: bool 
 
     named_results  whether every returned value gets a local, for dialects that qualify locals
     """
-    unit = Unit(selection.functions, selection.structs)
+    unit = drop_decided(Unit(selection.functions, selection.structs))
     if named_results:
         unit = name_results(unit)
     return add_prefix(unit, prefix)
