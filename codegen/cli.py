@@ -20,8 +20,11 @@ COMMANDS = {
     "emit": "codegen.commands.emit:command",
     "doctor": "codegen.commands.doctor:command",
     "env": "codegen.commands.env:command",
+    "factor": "codegen.commands.factor:command",
     "check": "conformance.commands.check:command",
+    "scene": "codegen.commands.scene:command",
     "render": "conformance.commands.render:command",
+    "report": "conformance.commands.report:command",
 }
 """Subcommand -> where it lives; what runs on devices lives in conformance and is loaded by name."""
 

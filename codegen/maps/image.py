@@ -73,15 +73,30 @@ def exr(pixels: npt.ArrayLike) -> bytes:
     raises  UserError where the library cannot write it
     """
     oiio = _library()
-    data = np.atleast_3d(np.asarray(pixels, np.float32))
+    return _encoded(np.atleast_3d(np.asarray(pixels, np.float32)), "exr", oiio.FLOAT, "zip")
+
+
+def png(pixels: npt.ArrayLike) -> bytes:
+    """(height, width, channels) values in [0, 1] as the bytes of an 8-bit PNG, rounded, not sRGB-coded.
+
+    raises  UserError where the library cannot write it
+    """
+    oiio = _library()
+    code = np.round(np.clip(np.asarray(pixels, np.float64), 0.0, 1.0) * 255.0).astype(np.uint8)
+    return _encoded(code, "png", oiio.UINT8, None)
+
+
+def _encoded(data: npt.NDArray[np.generic], kind: str, format_: Any, compression: str | None) -> bytes:
+    oiio = _library()
     height, width, channels = data.shape
-    spec = oiio.ImageSpec(width, height, channels, oiio.FLOAT)
-    spec.attribute("compression", "zip")
+    spec = oiio.ImageSpec(width, height, channels, format_)
+    if compression is not None:
+        spec.attribute("compression", compression)
     with tempfile.TemporaryDirectory(prefix="vair-") as folder:
-        path = os.path.join(folder, "image.exr")
+        path = os.path.join(folder, f"image.{kind}")
         out = oiio.ImageOutput.create(path)
         done = out is not None and out.open(path, spec) and out.write_image(np.ascontiguousarray(data))
         closed = out is not None and out.close()
         if not (done and closed):
-            raise UserError(f"cannot make an OpenEXR file: {_reason(oiio.geterror())}")
+            raise UserError(f"cannot make a .{kind} file: {_reason(oiio.geterror())}")
         return Path(path).read_bytes()
