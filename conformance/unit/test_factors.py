@@ -24,7 +24,8 @@ HALF_VECTOR_RMS, STRAND_RMS, STRAND_RMS_WITH_COSINES = 0.01, 0.13, 0.02
 """Promised: half-vector lobes fit to 1 %, a strand's lobe only to about 11 %, with r(t.l, t.v) to 2 %."""
 SATIN = {0.0: 0.277, 90.0: 0.310}
 """Azimuth of a viewer 40 degrees off the normal -> mean of satin over cosine-weighted light, as published."""
-SATIN_ROUNDING = 0.001
+SATIN_ROUNDING = 0.002
+"""The published means are of random samples, and the azimuth of the images is only known to a texel."""
 
 
 def smooth_factors(channels: int = 1) -> Factors:
