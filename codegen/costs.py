@@ -11,11 +11,11 @@ from codegen.errors import UserError
 from codegen.ir.nodes import Function
 from codegen.library import Library, default_root
 
-SCHEMA = 1
+SCHEMA = 2
 
 
 def results_folder() -> Path:
-    """Where `./dev bench --record` keeps one file per driver."""
+    """Where `vair report --record` keeps one file per driver."""
     return default_root().parent / "conformance" / "bench" / "results"
 
 
@@ -32,7 +32,9 @@ def recorded(folder: Path | None = None) -> tuple[dict[str, Any], ...]:
         except (json.JSONDecodeError, OSError) as e:
             raise UserError(f"{path.name}: not a readable result: {e}") from None
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-            raise UserError(f"{path.name}: not a result of schema {SCHEMA}; record it anew with ./dev bench")
+            raise UserError(
+                f"{path.name}: not a result of schema {SCHEMA}; measure anew, vair report --record"
+            )
         found.append(data)
     return tuple(found)
 

@@ -107,5 +107,5 @@ def _speed_method(results: list[dict[str, Any]]) -> str:
         "independent chains, one thread; of the others: its multiple, the median of interleaved rounds. A "
         "ratio holds for its driver only. Error: largest over uniform and hard inputs; of a printed form, "
         f"against the printed formula. {first['machine']['cpu']}; {drivers}; {first['method']['clock']}. "
-        "`./dev bench` measures anew; [conformance/bench](conformance/bench) says how."
+        "`./dev report` measures anew; [conformance/bench](conformance/bench) says how."
     )

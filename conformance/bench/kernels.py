@@ -31,20 +31,27 @@ INDENT = "    "
 class Mode:
     """How the evaluations of a kernel depend on each other.
 
-    name    latency: each waits for the last one; throughput: several chains side by side; flat: the same
+    name    latency: each waits for the last one; throughput: several chains side by side; flat: one chain
             without a loop, for compilers that only then work on several lanes at once
     chains  independent chains in one lane
+    length  evaluations that a chain makes in one step
     looped  whether the steps are a loop; a kernel without one takes a single step
     """
 
     name: str
     chains: int
+    length: int = 1
     looped: bool = True
+
+    @property
+    def evaluations(self) -> int:
+        """How many a lane makes in one step."""
+        return self.chains * self.length
 
 
 LATENCY = Mode("latency", 1)
 THROUGHPUT = Mode("throughput", 8)
-FLAT = Mode("flat", 8, looped=False)
+FLAT = Mode("flat", 1, length=8, looped=False)
 
 
 def modes(target: str) -> tuple[Mode, ...]:
@@ -89,7 +96,7 @@ class _Body:
         printer = StmtPrinter(self.dialect)
         lines = printer.block(tuple(self._prologue()), INDENT)
         step: list[ir.Stmt] = []
-        for repeat in range(repeats):
+        for repeat in range(repeats * self.mode.length):
             for chain in range(self.mode.chains):
                 step += self._evaluation(chain, f"{chain}_{repeat}", call=call)
         if self.mode.looped:

@@ -7,6 +7,8 @@ import math
 import os
 import platform
 import re
+from collections.abc import Mapping
+from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -17,10 +19,10 @@ from codegen.library import VERSION, Library
 from conformance.bench.accuracy import Error
 from conformance.bench.kernels import THROUGHPUT
 from conformance.bench.ratios import Spread
-from conformance.bench.timing import Bench, Timing
+from conformance.bench.timing import Bench, GroupTiming, Timing
 from targets import Device
 
-SCHEMA = 1
+SCHEMA = 2
 RESULTS = Path(__file__).parent / "results"
 DIGITS = 4
 PACKAGES = ("numpy", "moderngl", "wgpu", "pyopencl")
@@ -39,10 +41,16 @@ def rounded(value: Any) -> Any:
 
 def short_name(device: Device) -> str:
     """A driver as people call it: llvmpipe, lavapipe, PoCL; else the device's own name."""
-    if "portable computing" in device.driver.lower():
+    driver, name = device.driver.lower(), device.device.lower()
+    if "portable computing" in driver:
         return "PoCL"
-    if "llvmpipe" in device.device:
-        return "llvmpipe" if device.target == "glsl" else "lavapipe"
+    if "rusticl" in driver:
+        return "Rusticl"
+    if "swiftshader" in name:
+        return "SwiftShader"
+    if "llvmpipe" in name:
+        mesa = "llvmpipe" if device.target == "glsl" else "lavapipe"
+        return "wgpu on OpenGL" if "on OpenGL" in device.api else mesa
     return device.device
 
 
@@ -62,7 +70,7 @@ def method_data(bench: Bench) -> dict[str, Any]:
         "clock": bench.clock_name,
         "driver_threads": 1 if bench.software else None,
         "order": "every kernel forwards and backwards in each round (A B B A), the first one changing",
-        "rounds": bench.effort.rounds,
+        "rounds": [bench.effort.rounds, max(bench.effort.most, bench.effort.rounds)],
         "lanes": bench.lanes,
         "throughput_chains": THROUGHPUT.chains,
         "net": "above a kernel that adds up the inputs instead",
@@ -106,7 +114,40 @@ def error_data(e: Error, domain: str) -> dict[str, Any]:
         "not_finite": e.non_finite,
         "inputs": e.count,
         "domain": domain,
+        "ulp": vars(e.ulp),
+        "steps": vars(e.steps),
+        "permitted": vars(e.permitted) if e.permitted is not None else None,
     }
+
+
+def group_data(base: str, timings: Mapping[str, GroupTiming]) -> dict[str, Any]:
+    """What the rounds of a group's modes were, and which pairs they leave open."""
+    return {
+        "base": base,
+        "modes": {
+            mode: {
+                "rounds": len(next(iter(t.rounds_ns.values()))),
+                "undecided": [list(pair) for pair in t.undecided],
+                "raw_ns": t.rounds_ns,
+            }
+            for mode, t in timings.items()
+        },
+    }
+
+
+def without_raw(result: dict[str, Any]) -> dict[str, Any]:
+    """A driver's result as it is kept: all but the times of single rounds."""
+    groups = [
+        {
+            **g,
+            "modes": {
+                mode: {key: value for key, value in data.items() if key != "raw_ns"}
+                for mode, data in g["modes"].items()
+            },
+        }
+        for g in result["groups"]
+    ]
+    return {**result, "groups": groups}
 
 
 def machine_data() -> dict[str, Any]:
@@ -140,7 +181,13 @@ def _installed(name: str) -> str | None:
 
 def complete(result: dict[str, Any], load: dict[str, list[float]]) -> dict[str, Any]:
     """A worker's result with everything that a recorded file says."""
-    head = {"schema": SCHEMA, "version": VERSION, "device": result["device"], "machine": machine_data()}
+    head = {
+        "schema": SCHEMA,
+        "version": VERSION,
+        "date": datetime.now(UTC).date().isoformat(),
+        "device": result["device"],
+        "machine": machine_data(),
+    }
     whole: dict[str, Any] = rounded({**head, "load_average": load, **result})
     return whole
 

@@ -1,4 +1,4 @@
-"""Measuring all targets: one worker process each, whose environment makes its driver use one thread."""
+"""Measuring drivers: one worker process each, whose environment makes its driver use one thread."""
 
 from __future__ import annotations
 
@@ -6,68 +6,138 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from codegen.errors import UserError
 from codegen.library import default_root
 from conformance.bench.record import complete
 from conformance.bench.timing import QUICK, Effort
+from conformance.bench.vectorised import CACHE, REMARKS
 from conformance.bench.worker import Job
+from targets import TargetUnavailable
+from targets.drivers import driver, environment_of
 
 ONE_THREAD = {"LP_NUM_THREADS": "1", "POCL_MAX_PTHREAD_COUNT": "1"}
-FIRST = ("opencl", "wgsl", "glsl")
-"""Order of starting: what takes longest comes first."""
+WEIGHTS = {"opencl": 4, "wgsl": 2, "glsl": 1}
+"""How long a target takes beside the others: PoCL compiles slowly."""
 
 Watch = Callable[[str, dict[str, Any]], None]
-"""Called with a target and an event of its worker: started (total), done (what)."""
+"""Called with a driver's label and an event of its worker: started (total), done (what)."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where to measure: a target, and a driver of the catalogue by name (empty: the one it prefers)."""
+
+    target: str
+    driver: str = ""
+
+    @property
+    def label(self) -> str:
+        """What it is called in messages."""
+        return self.driver or self.target
 
 
 @dataclass(frozen=True)
 class Options:
-    """What to measure on every target; see worker.Job. `at_once`: workers side by side."""
+    """What to measure on every driver; see worker.Job.
+
+    seconds  how long all of it should take, on a machine that does nothing else
+    at_once  workers side by side
+    """
 
     functions: tuple[str, ...] = ()
     effort: Effort = Effort()  # noqa: RUF009 - frozen
     uniform: int = 20_000
     family: int = 2_000
     figures: int = 20_000
+    seconds: float = 1000.0
     at_once: int = 2
 
     @staticmethod
     def quick(functions: tuple[str, ...] = ()) -> Options:
-        """Fewer rounds and fewer inputs."""
-        return Options(functions, QUICK, uniform=4_000, family=500, figures=4_000)
+        """Fewer rounds, fewer inputs, no promised figures."""
+        return Options(functions, QUICK, uniform=2_000, family=200, figures=0, seconds=95.0)
+
+
+def places(targets: Sequence[str], drivers: Sequence[str]) -> list[Place]:
+    """Where to measure; raises UserError for a driver that cannot be timed or is not known."""
+    found = [Place(target) for target in targets]
+    for name in drivers:
+        try:
+            chosen = driver(name)
+        except ValueError as e:
+            raise UserError(str(e)) from None
+        if chosen.kernel:
+            raise UserError(f"driver {name} cannot be timed: it takes programs of another form than the rest")
+        found.append(Place(chosen.target, name))
+    return found
 
 
 def measure(
-    targets: Sequence[str], options: Options, watch: Watch = lambda target, event: None
+    where: Sequence[Place], options: Options, watch: Watch = lambda label, event: None
 ) -> tuple[list[dict[str, Any]], dict[str, str]]:
-    """Measure these targets.
+    """Measure on these drivers.
 
-    returns  the data of each that is here, as recorded files hold it; and why each of the others is not
+    returns  the data of each that is here, as recorded files hold it; and by label why each other is not
     errors   UserError where a worker fails
     """
-    order = sorted(targets, key=lambda t: FIRST.index(t) if t in FIRST else len(FIRST))
-    with ThreadPoolExecutor(max(1, min(options.at_once, os.cpu_count() or 1))) as pool:
-        running = {t: pool.submit(_work, t, options, watch) for t in order}
-        answers = {t: running[t].result() for t in targets}
+    queues = schedule(where, max(1, min(options.at_once, os.cpu_count() or 1)), options.seconds)
+
+    def in_turn(queue: list[tuple[Place, float]]) -> dict[Place, dict[str, Any] | str]:
+        return {p: _work(p, replace(options, seconds=seconds), watch) for p, seconds in queue}
+
+    answers: dict[Place, dict[str, Any] | str] = {}
+    with ThreadPoolExecutor(len(queues)) as pool:
+        for part in pool.map(in_turn, queues):
+            answers |= part
+    answers = {p: answers[p] for p in where}
     found = [answer for answer in answers.values() if not isinstance(answer, str)]
-    missing = {t: answer for t, answer in answers.items() if isinstance(answer, str)}
+    missing = {p.label: answer for p, answer in answers.items() if isinstance(answer, str)}
     return found, missing
 
 
-def _work(target: str, options: Options, watch: Watch) -> dict[str, Any] | str:
-    """One worker's result, or the reason why the target is not available."""
-    o = options
-    job = Job(target, o.functions, o.effort, o.uniform, o.family, o.figures)
+def schedule(where: Sequence[Place], at_once: int, seconds: float) -> list[list[tuple[Place, float]]]:
+    """Queues of drivers that are measured side by side, each driver with its share of the time."""
+    queues: list[list[Place]] = [[] for _ in range(min(at_once, len(where)))]
+    for place in sorted(where, key=lambda p: -WEIGHTS[p.target]):
+        min(queues, key=lambda queue: sum(WEIGHTS[p.target] for p in queue)).append(place)
+    return [
+        [(p, seconds * WEIGHTS[p.target] / sum(WEIGHTS[q.target] for q in queue)) for p in queue]
+        for queue in queues
+    ]
+
+
+def _environment(place: Place, scratch: str) -> dict[str, str]:
+    """Variables of a worker; raises TargetUnavailable where a file is missing that its driver needs.
+
+    scratch  an empty folder for PoCL's compiled kernels
+    """
+    own = environment_of(driver(place.driver)) if place.driver else dict(os.environ)
+    return {**own, **ONE_THREAD, REMARKS: "1", CACHE: scratch}
+
+
+def _work(place: Place, options: Options, watch: Watch) -> dict[str, Any] | str:
+    """One worker's result, or the reason why the driver is not available."""
+    with tempfile.TemporaryDirectory(prefix="vair-") as scratch:
+        try:
+            environment = _environment(place, scratch)
+        except TargetUnavailable as reason:
+            return str(reason)
+        return _worker(place, options, watch, environment)
+
+
+def _worker(place: Place, o: Options, watch: Watch, environment: dict[str, str]) -> dict[str, Any] | str:
+    job = Job(place.target, place.driver, o.functions, o.effort, o.uniform, o.family, o.figures, o.seconds)
     before = list(os.getloadavg())
     process = subprocess.Popen(
         [sys.executable, "-m", "conformance.bench.worker"],
         cwd=default_root().parent,
-        env={**os.environ, **ONE_THREAD},
+        env=environment,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
@@ -84,9 +154,10 @@ def _work(target: str, options: Options, watch: Watch) -> dict[str, Any] | str:
             elif event.get("event") == "unavailable":
                 answer = str(event["reason"])
             elif event:
-                watch(target, event)
+                watch(place.label, event)
     if answer is None:
-        raise UserError(f"measuring {target} failed with status {process.returncode}; see the messages above")
+        status = process.returncode
+        raise UserError(f"measuring on {place.label} failed with status {status}; see the messages above")
     return answer
 
 

@@ -7,10 +7,12 @@ computes, see clocks.py; hardware by the clock on the wall.
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +24,8 @@ from conformance.bench.clocks import SECONDS, Clock, driver_clock
 from conformance.bench.inputs import Group, lanes
 from conformance.bench.kernels import FLAT, THROUGHPUT, Mode
 from conformance.bench.ratios import Spread, net, net_ratio, spread
+from conformance.bench.stopping import settled, undecided
+from conformance.bench.vectorised import Vectorised, by_construction, from_remarks, remarks, tells
 from targets import Device, TimedRuntime
 from targets.protocol import Prepared
 
@@ -32,6 +36,7 @@ SOFTWARE = (
     "swiftshader",
     "portable computing language",
     "pthread",
+    "rusticl",
     "warp",
 )
 """Drivers that run on the CPU, by words in their names."""
@@ -56,17 +61,21 @@ def is_software(device: Device) -> bool:
 class Effort:
     """How much a measurement takes.
 
-    rounds    rounds in which every kernel is launched twice
+    rounds    least rounds, in each of which every kernel is launched twice
+    most      most rounds; they go on until the order of every two members is known, see stopping.py
     seconds   least time of one launch of the base's kernel
     launches  least time of one launch as a multiple of what an empty launch takes
+    flat      whether kernels without a loop are timed as well, where that makes a difference
     """
 
-    rounds: int = 20
+    rounds: int = 16
+    most: int = 48
     seconds: float = 2.5e-3
     launches: float = 12.0
+    flat: bool = True
 
 
-QUICK = Effort(rounds=7, seconds=2e-3, launches=8.0)
+QUICK = Effort(rounds=8, most=12, seconds=1e-3, launches=6.0, flat=False)
 
 
 @dataclass(frozen=True)
@@ -76,6 +85,20 @@ class Timing:
     net_ns: Spread
     gross_ns: float
     ratio: Spread | None
+
+
+@dataclass(frozen=True)
+class GroupTiming:
+    """A group in one mode.
+
+    members    timings by name
+    undecided  pairs of members whose order the rounds leave open
+    rounds_ns  per kernel (the baseline's name is empty) the nanoseconds per evaluation of every round
+    """
+
+    members: dict[str, Timing]
+    undecided: list[tuple[str, str]]
+    rounds_ns: dict[str, list[float]]
 
 
 class Bench:
@@ -118,29 +141,60 @@ class Bench:
         one.release()
         return float(np.median(times))
 
-    def group(self, group: Group, mode: Mode) -> dict[str, Timing]:
-        """The members of a group by name, in one mode."""
+    def group(self, group: Group, mode: Mode, until: float = math.inf) -> GroupTiming:
+        """The members of a group in one mode.
+
+        until  time of time.monotonic() after which only the least number of rounds is run
+        """
         target = self.runtime.device.target
         texts = {f.name: kernels.kernel(self.library, f.name, target, mode) for f in group.members}
         texts[BASELINE] = kernels.baseline(self.library, group.base.name, target, mode)
         words = self.words(group, mode)
+        if mode == FLAT:
+            words = self.enough_lanes(texts[group.base.name], words)
         steps = self.steps(texts[group.base.name], words, mode)
         with self.prepared(texts, words, steps) as ready:
-            rounds = self.rounds(ready)
-        scale = 1e9 / (2 * words.shape[1] * mode.chains * steps)
+            rounds = self.rounds(ready, lambda so_far: settled(so_far, BASELINE), until)
+        scale = 1e9 / (2 * words.shape[1] * mode.evaluations * steps)
         floor, reference = rounds[BASELINE], rounds[group.base.name]
         found = {}
         for f in group.members:
             above = spread([t * scale for t in net(rounds[f.name], floor)])
             ratio = net_ratio(rounds[f.name], reference, floor)
             found[f.name] = Timing(above, float(np.median(rounds[f.name])) * scale, ratio)
+        per_evaluation = {name: [t * scale for t in times] for name, times in rounds.items()}
+        return GroupTiming(found, undecided(rounds, BASELINE), per_evaluation)
+
+    def vectorised(self, group: Group) -> dict[str, Vectorised]:
+        """Per member, on how many work items its kernel computes at once; without a loop where it matters."""
+        device = self.runtime.device
+        if not tells(device) or not self.effort.flat:
+            return {f.name: by_construction(device) for f in group.members}
+        found = {}
+        for f in group.members:
+            found[f.name] = from_remarks(remarks(partial(self.compile_flat, group, f.name)))
         return found
+
+    def compile_flat(self, group: Group, name: str) -> None:
+        """Build a member's kernel without a loop; PoCL compiles it at its first launch."""
+        text = kernels.kernel(self.library, name, self.runtime.device.target, FLAT)
+        with self.prepared({name: text}, self.words(group, FLAT), 1) as ready:
+            ready[name].launch()
 
     def words(self, group: Group, mode: Mode) -> Words:
         """Inputs for every lane of a kernel."""
         count = max(self.lanes, FLAT_LANES) if mode == FLAT else self.lanes
         distinct = lanes(self.library, group, min(count, SOFTWARE_LANES))
         return np.tile(distinct, (1, count // distinct.shape[1]))
+
+    def enough_lanes(self, text: str, words: Words) -> Words:
+        """So many of the lanes that one launch without a loop lasts about as long as it should."""
+        few = words[:, :SOFTWARE_LANES]
+        with self.prepared({"": text}, few, 1) as ready:
+            ready[""].launch()  # the first one compiles
+            taken = min(self.launch(ready[""]) for _ in range(3)) - self.empty
+        times = int(np.ceil(self.seconds / max(taken, 1e-9)))
+        return words[:, : SOFTWARE_LANES * max(times, 1)]
 
     def steps(self, text: str, words: Words, mode: Mode) -> int:
         """Steps that make one launch last about as long as it should."""
@@ -173,14 +227,24 @@ class Bench:
         one.launch()
         return self.clock() - begin
 
-    def rounds(self, ready: Mapping[str, Prepared]) -> dict[str, list[float]]:
-        """Per kernel the seconds of its two launches in each round."""
+    def rounds(
+        self,
+        ready: Mapping[str, Prepared],
+        enough: Callable[[Mapping[str, list[float]]], bool] = lambda so_far: True,
+        until: float = math.inf,
+    ) -> dict[str, list[float]]:
+        """Per kernel the seconds of its two launches in each round.
+
+        enough  whether the rounds so far tell what is asked; asked after the least number of them
+        """
         times: dict[str, list[float]] = {name: [] for name in ready}
         for one in ready.values():
             for _ in range(2):
                 one.launch()
         order = list(ready)
-        for _ in range(self.effort.rounds):
+        for done in range(max(self.effort.most, self.effort.rounds)):
+            if done >= self.effort.rounds and (time.monotonic() > until or enough(times)):
+                break
             sums = dict.fromkeys(order, 0.0)
             for name in (*order, *reversed(order)):
                 sums[name] += self.launch(ready[name])

@@ -1,4 +1,4 @@
-"""Measures one target in a process of its own: `python -m conformance.bench.worker`, started by run.py.
+"""Measures one driver in a process of its own: `python -m conformance.bench.worker`, started by run.py.
 
 The job comes as JSON on standard input; events leave as JSON, one a line, on standard output. A process of
 its own, because drivers read the number of their threads from the environment before they start.
@@ -7,21 +7,39 @@ its own, because drivers read the number of their threads from the environment b
 from __future__ import annotations
 
 import json
+import math
+import os
 import sys
+import tempfile
+import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from codegen.execute import execute
 from codegen.library import Library, load_library
+from codegen.readme import SPEED
 from conformance.bench import kernels
 from conformance.bench.accuracy import Error, errors
 from conformance.bench.figures import device_figures
 from conformance.bench.inputs import Group, groups
-from conformance.bench.record import described_device, error_data, function_data, method_data, timing_data
+from conformance.bench.record import (
+    described_device,
+    error_data,
+    function_data,
+    group_data,
+    method_data,
+    timing_data,
+)
 from conformance.bench.selfcheck import self_checks
 from conformance.bench.timing import Bench, Effort
-from conformance.check.engine import backend
-from targets import TargetUnavailable, open_runtime
+from conformance.bench.vectorised import STANDARD_OUTPUT
+from conformance.bench.whole import whole
+from conformance.check.engine import Backend
+from targets import TargetUnavailable, TimedRuntime, open_runtime
+from targets.drivers import driver, open_driver
 
+Say = Callable[..., None]
 CHECKED = "sin_angle"
 """The function that the self-checks time; the first measured one where the library lacks it."""
 
@@ -30,17 +48,23 @@ CHECKED = "sin_angle"
 class Job:
     """What to measure.
 
+    target           glsl, wgsl or opencl
+    driver           a driver of targets/drivers.toml by name; empty: the one that the target prefers
     functions        names; none: every function with variants
     uniform, family  inputs per function for its error: random ones, and at most of each hard family
     figures          random points per promised figure; 0: none
+    seconds          how long it should take; 0: as long as it takes. Core functions come first, and what
+                     the time does not suffice for is left out
     """
 
     target: str
+    driver: str
     functions: tuple[str, ...]
     effort: Effort
     uniform: int
     family: int
     figures: int
+    seconds: float
 
     def to_json(self) -> str:
         """The job as text."""
@@ -55,60 +79,111 @@ class Job:
         )
 
 
-def say(event: str, **content: Any) -> None:
-    """One event as a line of JSON."""
-    print(json.dumps({"event": event, **content}), flush=True)
+class Channel:
+    """The events, as lines of JSON on what was standard output.
+
+    Standard output itself becomes a file: drivers write to it, and some of that is of use (vectorised.py).
+    """
+
+    def __init__(self) -> None:
+        self._stream = os.fdopen(os.dup(STANDARD_OUTPUT), "w", encoding="utf-8")
+        self._file = tempfile.TemporaryFile()  # noqa: SIM115  open as long as the process
+        os.dup2(self._file.fileno(), STANDARD_OUTPUT)
+
+    def say(self, event: str, **content: Any) -> None:
+        """One event."""
+        self._stream.write(json.dumps({"event": event, **content}) + "\n")
+        self._stream.flush()
 
 
-def measure(job: Job) -> dict[str, Any]:
-    """The whole measurement of one target, as data; says how far it is."""
+def opened(job: Job) -> TimedRuntime:
+    """The driver's runtime; raises TargetUnavailable."""
+    return open_driver(driver(job.driver)) if job.driver else open_runtime(job.target)
+
+
+def backend_of(runtime: TimedRuntime) -> Backend:
+    """What computes results for their errors: the driver that is timed."""
+    d = runtime.device
+
+    def run(library: Library, name: str, inputs: Any) -> Any:
+        return execute(library, name, inputs, runtime)
+
+    return Backend(d.target, f"{d.api}; {d.driver}; {d.device}", run)
+
+
+def measure(job: Job, say: Say) -> dict[str, Any]:
+    """The whole measurement of one driver, as data; says how far it is."""
+    end = time.monotonic() + job.seconds if job.seconds else math.inf
     library = load_library()
-    chosen = groups(library, job.functions)
-    runtime = open_runtime(job.target)
+    chosen = sorted(groups(library, job.functions), key=lambda g: g.base.name not in SPEED)
+    runtime = opened(job)
     bench = Bench(library, runtime, job.effort)
-    on = backend(job.target)
+    on = backend_of(runtime)
     say("started", total=len(chosen) + 2, software=bench.software)
     checked = groups(library, [CHECKED])[0] if CHECKED in library.public else chosen[0]
     checks = self_checks(bench, checked)
     say("done", what="self-checks")
     functions: list[dict[str, Any]] = []
-    for group in chosen:
+    kept: list[dict[str, Any]] = []
+    left_out: list[str] = []
+    for k, group in enumerate(chosen):
+        if time.monotonic() > end:
+            left_out.append(group.base.name)
+            continue
+        # Every group gets an equal share of the time that is left.
+        until = time.monotonic() + (end - time.monotonic()) / (len(chosen) - k)
         domain, found = errors(library, group, on, job.uniform, job.family)
-        functions += measured(library, bench, group, domain, found)
+        entries, timings = measured(library, bench, group, domain, found, until)
+        everywhere = whole(library, group, on, job.uniform, job.family)
+        for entry in entries:
+            own = everywhere.get(entry["name"])
+            entry["whole"] = vars(own) if own is not None else None
+        functions += entries
+        kept.append(timings)
         say("done", what=group.base.name)
     figures = [f.as_data() for f in device_figures(library, on, job.figures)] if job.figures else []
     say("done", what="figures")
     return {
-        "device": described_device(runtime.device),
+        "device": {"driver_name": job.driver, **described_device(runtime.device)},
         "method": method_data(bench),
         "self_checks": {"function": checked.base.name, **checks},
         "functions": functions,
+        "groups": kept,
+        "left_out": left_out,
         "figures": figures,
     }
 
 
 def measured(
-    library: Library, bench: Bench, group: Group, domain: str, found: dict[str, Error]
-) -> list[dict[str, Any]]:
-    """The entries of a group: speed in every mode beside the error."""
-    speeds = {mode.name: bench.group(group, mode) for mode in kernels.modes(bench.runtime.device.target)}
-    return [
+    library: Library, bench: Bench, group: Group, domain: str, found: dict[str, Error], until: float
+) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    """The entries of a group, speed in every mode beside the error; and its rounds."""
+    vectorised = bench.vectorised(group)
+    modes = [m for m in kernels.modes(bench.runtime.device.target) if m.looped or bench.effort.flat]
+    speeds = {}
+    for k, mode in enumerate(modes):
+        share = time.monotonic() + (until - time.monotonic()) / (len(modes) - k)
+        speeds[mode.name] = bench.group(group, mode, share)
+    entries = [
         {
             **function_data(library, f, group.base.name),
-            "speed": {mode: timing_data(timings[f.name]) for mode, timings in speeds.items()},
+            "speed": {mode: timing_data(timing.members[f.name]) for mode, timing in speeds.items()},
+            "vectorised": vars(vectorised[f.name]),
             "error": error_data(found[f.name], domain) if f.name in found else None,
         }
         for f in group.members
     ]
+    return entries, group_data(group.base.name, speeds)
 
 
 def main() -> None:
     """Run the job on standard input."""
+    channel = Channel()
     job = Job.from_json(sys.stdin.read())
     try:
-        say("result", data=measure(job))
+        channel.say("result", data=measure(job, channel.say))
     except TargetUnavailable as e:
-        say("unavailable", reason=str(e))
+        channel.say("unavailable", reason=str(e))
 
 
 if __name__ == "__main__":

@@ -7,7 +7,8 @@ Plan. No test asserts a speed.
   statistics  quartiles and net ratios of synthetic rounds with a common drift; a lost reference gives none
   inputs      groups are complete; a bound cuts the domains that it names; inputs lie in all members' domains
   records     rounding, names of files, the README's table and the cost of `vair list`, from a small result
-  bad usage   an unknown function or target is refused with one sentence and status 2
+  choice      errors over the base's whole domain know of narrower members and of declared bounds
+Not covered here: when rounds stop (test_bench_stopping.py), the report and its command (test_report.py).
 """
 
 from __future__ import annotations
@@ -18,10 +19,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from codegen.bounds import Bound
-from codegen.costs import costs
+from codegen.costs import SCHEMA, costs, recorded
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.evaluate.arrays import arithmetic, convert_inputs
@@ -32,7 +32,7 @@ from codegen.library import Library, load_library
 from codegen.readme import speed
 from conformance import cases
 from conformance.bench import kernels
-from conformance.bench.__main__ import command
+from conformance.bench.accuracy import ulps
 from conformance.bench.emission import emit
 from conformance.bench.figures import Figure
 from conformance.bench.inputs import declared, groups, lanes, within
@@ -47,15 +47,18 @@ from conformance.bench.record import (
     slug,
     timing_data,
 )
-from conformance.bench.run import Options
+from conformance.bench.run import Options, places, schedule
 from conformance.bench.selfcheck import EXPECTED, self_checks
 from conformance.bench.timing import Bench, Effort
+from conformance.bench.vectorised import by_construction, from_remarks
+from conformance.bench.whole import whole
 from conformance.bench.worker import Job
+from conformance.check.engine import backend
 from targets import Device, TimedRuntime
 
 SHAPES = ("safe_pow", "sin_angle", "fakefur_shade", "pcg_hash")
 """Scalars; vectors; structs; integers."""
-TINY = Effort(rounds=3, seconds=2e-4, launches=0.0)
+TINY = Effort(rounds=3, most=3, seconds=2e-4, launches=0.0)
 LANES = 64
 STEPS = 3
 
@@ -105,7 +108,9 @@ FLAT_ONE = Mode("flat", 1, looped=False)
 def test_tiny_measurement(library: Library, runtime: TimedRuntime) -> None:
     bench = Bench(library, runtime, TINY)
     (group,) = groups(library, ["strand_specular"])
-    found = bench.group(group, THROUGHPUT)
+    timing_of_group = bench.group(group, THROUGHPUT)
+    found = timing_of_group.members
+    assert {len(rounds) for rounds in timing_of_group.rounds_ns.values()} == {TINY.rounds}
     assert set(found) == {f.name for f in group.members}
     for timing in found.values():
         assert timing.gross_ns > 0.0
@@ -217,6 +222,7 @@ def test_recorded_results_reach_the_readme_and_the_list(library: Library, tmp_pa
     table = speed(library, tmp_path)
     assert "| `sin_angle` | relative | 1 ns | 2.8e-07 |" in table
     assert "| `sin_angle_cosine` | relative | x 0.50 | 2.8e-07 |" in table
+    assert recorded(tmp_path)[0]["schema"] == SCHEMA
     (entry,) = costs(library, library.function("sin_angle"), tmp_path)
     assert entry["driver"] == "llvmpipe"
     assert entry["current"]
@@ -241,17 +247,17 @@ def test_figures_are_met_up_to_their_goal() -> None:
 
 
 def test_a_job_survives_the_way_to_its_worker() -> None:
-    options = Options.quick(("sin_angle",))
-    job = Job("glsl", options.functions, options.effort, options.uniform, options.family, options.figures)
+    o = Options.quick(("sin_angle",))
+    job = Job("glsl", "llvmpipe-compute", o.functions, o.effort, o.uniform, o.family, o.figures, o.seconds)
     assert Job.from_json(job.to_json()) == job
 
 
 def test_timing_data_without_a_ratio(library: Library, runtime: TimedRuntime) -> None:
     bench = Bench(library, runtime, TINY)
     (group,) = groups(library, ["sin_angle"])
-    data = timing_data(bench.group(group, LATENCY)[group.base.name])
+    data = timing_data(bench.group(group, LATENCY).members[group.base.name])
     assert set(data) == {"net_ns", "net_ns_quartiles", "gross_ns", "ratio", "ratio_quartiles"}
-    assert method_data(bench)["rounds"] == TINY.rounds
+    assert method_data(bench)["rounds"] == [TINY.rounds, TINY.most]
 
 
 def test_emission_is_measured_and_repeats() -> None:
@@ -260,15 +266,47 @@ def test_emission_is_measured_and_repeats() -> None:
     assert all(min(run.wall, run.user, run.megabytes) > 0.0 for run in runs)
 
 
+def test_errors_over_the_whole_domain(library: Library) -> None:
+    on = backend("numpy")
+    sines = whole(library, groups(library, ["sin_angle"])[0], on, uniform=500, family=50)
+    assert sines["sin_angle"].largest["absolute"] <= sines["sin_angle"].declared["absolute"]
+    powers = whole(library, groups(library, ["pow_one_minus"])[0], on, uniform=500, family=50)
+    narrow = powers["pow_one_minus_sq16"]
+    assert narrow.narrower and not narrow.largest, "a variant that accepts less cannot stand for its base"
+    printed = groups(library, ["strand_cosine"])[0]
+    assert not any(library.function(n).kind == "printed" for n in whole(library, printed, on, 50, 10))
+
+
+def test_ulp_of_vectors_are_those_of_the_largest_component() -> None:
+    expected = np.array([[1.0, 1e-9, 0.0]])
+    got = np.array([[1.0, 1e-9, 2.0**-23]], np.float32)
+    assert ulps(got, expected, 2.0**-126) == pytest.approx([1.0])
+    assert ulps(np.array([2.0**-40], np.float32), np.zeros(1), 2.0**-24) == pytest.approx([2.0**7])
+
+
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("text", "lanes"),
     [
-        (["--function", "sin_angel"], 'did you mean "sin_angle"'),
-        (["--target", "glls"], 'did you mean "glsl"'),
-        (["--record", "--quick"], "--record keeps whole measurements"),
+        ("<unknown>:0:0: vectorized loop (vectorization width: 8, interleaved count: 1)", 8),
+        ("<unknown>:0:0: loop not vectorized: call instruction cannot be vectorized<unknown>:0:0: x", 1),
+        ("", None),
     ],
 )
-def test_bad_usage_is_one_sentence(arguments: list[str], words: str) -> None:
-    answer = CliRunner().invoke(command, arguments)
-    assert isinstance(answer.exception, UserError)
-    assert words in str(answer.exception)
+def test_remarks_of_the_compiler(text: str, lanes: int | None) -> None:
+    assert from_remarks(text).lanes == lanes
+
+
+def test_software_drivers_vectorise_by_construction() -> None:
+    mesa = Device("glsl", "OpenGL 4.5", "Mesa 22.3.6", "llvmpipe (LLVM 15.0.6, 256 bits)")
+    assert by_construction(mesa).lanes == 8
+    assert by_construction(Device("opencl", "OpenCL 3.0", "some GPU", "some GPU")).lanes is None
+
+
+def test_drivers_are_queued_by_weight() -> None:
+    queues = schedule(places(("glsl", "wgsl", "opencl"), ()), 2, 70.0)
+    assert [[p.target for p, _ in queue] for queue in queues] == [["opencl"], ["wgsl", "glsl"]]
+    assert all(sum(seconds for _, seconds in queue) == pytest.approx(70.0) for queue in queues)
+    with pytest.raises(UserError, match="cannot be timed"):
+        places((), ("softpipe-compute",))
+    with pytest.raises(UserError, match='did you mean "lavapipe"'):
+        places((), ("lavapip",))

@@ -24,7 +24,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 # What the script calls besides Python; all of it is on every system with bash.
 BASICS = ["bash", "cat", "dirname", "env", "flock", "grep", "id", "mkdir", "mktemp", "mv", "rm", "tail"]
-COMMANDS = ["setup", "demo", "test", "bench", "lint", "gen", "check-generated", "lock"]
+COMMANDS = ["setup", "demo", "test", "report", "lint", "gen", "check-generated", "lock"]
 
 
 @pytest.fixture

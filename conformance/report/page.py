@@ -1,0 +1,87 @@
+"""report.html: one file that needs no network, with the scripts of plotly and DataTables in it."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping
+from importlib.resources import files
+from typing import Any
+
+import jinja2
+
+from codegen.library import Library
+from conformance.bench.selfcheck import EXPECTED, MEANING
+from conformance.report.view import KINDS, MODES, view
+
+PLOTLY = ("plotly", "package_data/plotly.min.js")
+TABLES = ("itables", "html/dt_bundle.js")
+TABLES_STYLE = ("itables", "html/dt_bundle.css")
+
+
+def page(library: Library, report: Mapping[str, Any]) -> str:
+    """The whole page."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("conformance.report", "page"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["number"] = number
+    shown = view(library, report)
+    return environment.get_template("report.html.j2").render(
+        report=report,
+        view=shown,
+        rows=[(g, e, shown["drivers"][e["driver"]]) for g in shown["groups"] for e in g["entries"]],
+        kinds=KINDS,
+        modes=MODES,
+        expected=EXPECTED,
+        meaning=MEANING,
+        figures=figures(report),
+        data=embedded({key: shown[key] for key in ("drivers", "modes", "groups")}),
+        plotly=_text(*PLOTLY),
+        tables=base64.b64encode(_text(*TABLES).encode()).decode(),
+        tables_style=_text(*TABLES_STYLE),
+        style=_text("conformance.report", "page/report.css"),
+        script=_text("conformance.report", "page/report.js"),
+    )
+
+
+def embedded(data: Any) -> str:
+    """JSON that may stand inside a script element."""
+    return json.dumps(data, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+
+
+def figures(report: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The promised figures, one row for each with the values of all drivers; then those of emission."""
+    found: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for result in report["drivers"]:
+        for f in result["figures"]:
+            key = (f["what"], f["domain"], f["goal"], f["unit"])
+            found.setdefault(key, {**f, "values": []})["values"].append((result["device"]["short"], f))
+    rows = [*found.values(), *({**f, "values": [("", f)]} for f in report["emission"])]
+    return [{**row, "met": _met([f["met"] for _, f in row["values"]])} for row in rows]
+
+
+def _met(verdicts: list[bool | None]) -> bool | None:
+    told = [v for v in verdicts if v is not None]
+    return all(told) if told else None
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number for people: 0.87, 12.3, 1,540, 2.6e-7; a dash for none."""
+    if value is None:
+        return "\u2013"
+    if value == 0.0:
+        return "0"
+    size = abs(value)
+    if 1e-3 <= size < 1e5:
+        decimals = max(digits - 1 - max(int(f"{size:e}".split("e")[1]), -3), 0)
+        return f"{value:,.{decimals}f}"
+    mantissa, exponent = f"{value:.{digits - 2}e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def _text(package: str, path: str) -> str:
+    return files(package).joinpath(path).read_text(encoding="utf-8")

@@ -1,0 +1,80 @@
+"""What `vair scene` wrote about a scene, as a table of figures before and after."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from codegen.errors import UserError
+
+SCHEMA = 1
+COLUMNS = (
+    "Target",
+    "Driver",
+    "Operations",
+    "Lines",
+    "SPIR-V instructions",
+    "ns per evaluation",
+    "Time",
+    "Error in half steps",
+    "Predicted",
+)
+DASH = "\u2013"
+
+
+def read_scene_report(path: Path) -> dict[str, Any]:
+    """The figures of one scene; raises UserError for a path without a report of vair scene.
+
+    path  a folder that vair scene wrote, or its report.json
+    """
+    file = path / "report.json" if path.is_dir() else path
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise UserError(f'"{file}" is no report.json that can be read; write it with vair scene') from None
+    if not isinstance(data, dict) or data.get("schema") != SCHEMA or "scene" not in data:
+        raise UserError(f'"{file}" is no report of vair scene of schema {SCHEMA}')
+    scene, parameters = data["scene"], data["parameters"]
+    return {
+        "name": scene["name"],
+        "note": f"{scene['model']}, budget {scene['budget_stated']}: "
+        f"{len(parameters['before'])} parameters before, {len(parameters['left'])} after.",
+        "columns": list(COLUMNS),
+        "rows": [_row(target) for target in data["targets"]],
+    }
+
+
+def _row(target: Mapping[str, Any]) -> list[str]:
+    """One target: figures of the general function, an arrow, those of the specialised one."""
+    speed = target.get("speed") or {}
+    times = {name: s["ns"] for name, s in speed.items() if isinstance(s, Mapping)}
+    operations = {name: counts["all"] for name, counts in (target.get("operations") or {}).items()}
+    return [
+        target["target"],
+        _driver(target),
+        _change(operations),
+        _change(target.get("lines")),
+        _change(target.get("spirv_instructions")),
+        _change(times),
+        _short(speed.get("ratio")),
+        _short((target.get("proof") or {}).get("error", {}).get("half_steps_8bit")),
+        _short((target.get("predicted") or {}).get("half_steps_8bit")),
+    ]
+
+
+def _driver(target: Mapping[str, Any]) -> str:
+    return str(target.get("driver") or DASH) if target.get("executed") else "not executed"
+
+
+def _change(values: Mapping[str, float] | None) -> str:
+    """First and last of the stages, such as 228 \u2192 96."""
+    told = [v for v in (values or {}).values() if v is not None]
+    return f"{_short(told[0])} \u2192 {_short(told[-1])}" if len(told) > 1 else DASH
+
+
+def _short(value: float | None) -> str:
+    if value is None:
+        return DASH
+    return f"{value:.0f}" if isinstance(value, int) or abs(value) >= 100.0 else f"{value:.2g}"
