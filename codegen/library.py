@@ -13,7 +13,7 @@ from codegen.bounds import Bound, read_bounds
 from codegen.errors import UserError, unknown
 from codegen.frontend.resolve import Resolver
 from codegen.ir.nodes import Function, StructDef, callees, expressions
-from codegen.ir.types import Struct, Type
+from codegen.ir.types import Array, Struct, Type
 
 SECTIONS = ("numeric", "direction", "strand", "fakefur", "shells", "sampling", "lobes", "maps")
 """Order of the sections in listings and emitted files; unknown sections follow alphabetically."""
@@ -133,7 +133,7 @@ class Library:
         needed: dict[str, StructDef] = {}
 
         def visit(type_: Type) -> None:
-            if isinstance(type_, Struct) and type_.name not in needed:
+            if isinstance(type_, Struct) and not isinstance(type_, Array) and type_.name not in needed:
                 for field in type_.fields:
                     visit(field.type)
                 needed[type_.name] = self.struct(type_.name)

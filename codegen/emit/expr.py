@@ -6,7 +6,7 @@ from codegen.emit.dialect import Dialect
 from codegen.emit.literal import literal
 from codegen.emit.precedence import CONDITION, LEFT, RIGHT, level
 from codegen.ir import nodes as ir
-from codegen.ir.types import Struct, Vector
+from codegen.ir.types import Array, Struct, Type, Vector
 from codegen.ops import BUILTINS
 
 _SPELLING = {"//": "/", "and": "&&", "or": "||", "not": "!", "negate": "-"}
@@ -42,6 +42,8 @@ class ExprPrinter:
                 return self.convert(e)
             case ir.Member():
                 return f"{self.bare(e.value, _PRIMARY)}.{e.name}"
+            case ir.Index():
+                return f"{self.bare(e.value, _PRIMARY)}[{self.show(e.index)}]"
             case ir.Swizzle():
                 return f"{self.bare(e.value, _PRIMARY)}.{e.components}"
             case ir.Select():
@@ -83,12 +85,21 @@ class ExprPrinter:
         return frozenset() if is_sign else frozenset({"unary"})
 
     def construct(self, e: ir.Construct) -> str:
-        name = self.dialect.types.get(e.type.name, e.type.name)
+        name = self.type_name(e.type)
         if isinstance(e.type, Struct) and self.dialect.structs == "compound":
             return f"({name}){{{self.arguments(e.args)}}}"
         if isinstance(e.type, Vector) and self.dialect.vectors == "cast":
             return f"({name})({self.arguments(e.args)})"
         return f"{name}({self.arguments(e.args)})"
+
+    def type_name(self, type_: Type) -> str:
+        """The spelling of a type where a value of it is made."""
+        if isinstance(type_, Array):
+            element = self.dialect.types[type_.element.name]
+            if self.dialect.declaration == "name: type":
+                return f"array<{element}, {type_.size}>"
+            return f"{element}[{type_.size}]"
+        return self.dialect.types.get(type_.name, type_.name)
 
     def convert(self, e: ir.Convert) -> str:
         name = self.dialect.types[e.type.name]

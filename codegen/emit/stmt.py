@@ -6,7 +6,7 @@ from codegen.emit import wrap
 from codegen.emit.dialect import Dialect
 from codegen.emit.expr import ExprPrinter
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F16, F32, Struct, Type, element_of, leaves
+from codegen.ir.types import BOOL, F16, F32, Array, Struct, Type, element_of, leaves
 
 _STEP = "    "
 
@@ -20,6 +20,8 @@ class StmtPrinter:
 
     def type_name(self, type_: Type) -> str:
         """The spelling of a type where something is declared: with the dialect's precision, if it has one."""
+        if isinstance(type_, Array):
+            return self.expr.type_name(type_)
         name = self.dialect.types.get(type_.name, type_.name)
         if type_ == BOOL or isinstance(type_, Struct):
             return name
@@ -27,19 +29,32 @@ class StmtPrinter:
         return f"{self.dialect.half_precision if halved else self.dialect.precision} {name}".lstrip()
 
     def declare(self, name: str, type_: Type) -> str:
-        """A parameter or field."""
+        """A parameter, field or array."""
         if self.dialect.declaration == "name: type":
             return f"{name}: {self.type_name(type_)}"
+        if isinstance(type_, Array):
+            constant = "const " if self.dialect.structs == "compound" else ""
+            return f"{constant}{self.type_name(type_.element)} {name}[{type_.size}]"
         return f"{self.type_name(type_)} {name}"
 
     def let(self, s: ir.Let) -> str:
         value = self.expr.show(s.value)
+        if isinstance(s.value.type, Array):
+            return self.array(s, value)
         if self.dialect.declaration == "name: type":
             if not s.mutable:
                 return f"let {s.name} = {value};"
             return f"var {s.name}: {self.type_name(s.value.type)} = {value};"
         qualifier = f"{self.dialect.local} " if self.dialect.local and holds_floats(s.value.type) else ""
         return f"{qualifier}{self.type_name(s.value.type)} {s.name} = {value};"
+
+    def array(self, s: ir.Let, value: str) -> str:
+        """A local array: C takes its elements in braces, WGSL numbers only variables freely."""
+        if self.dialect.declaration == "name: type":
+            return f"var {s.name} = {value};"
+        if self.dialect.structs == "compound" and isinstance(s.value, ir.Construct):
+            value = f"{{{self.expr.arguments(s.value.args)}}}"
+        return f"{self.declare(s.name, s.value.type)} = {value};"
 
     def block(self, body: tuple[ir.Stmt, ...], indent: str) -> list[str]:
         """The lines of a block."""

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from codegen.errors import UserError, nearest, unknown
 from codegen.ir.types import BOOL, F16, F32, I32, U32, Scalar, Struct, Type, Vector
+from codegen.ir.types import Array as ArrayType
 
 Array = npt.NDArray[Any]
 Value = Array | dict[str, "Value"]
@@ -103,6 +104,8 @@ def convert_inputs(
 
 
 def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Value:
+    if isinstance(type_, ArrayType) and not isinstance(given, Mapping):
+        given = _elements(where, type_, given)
     if isinstance(type_, Struct):
         if not isinstance(given, Mapping):
             raise UserError(f"{where} is a {type_.name}: give its fields")
@@ -129,6 +132,17 @@ def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Val
         expected = "(N,)" if not shape else f"(N, {shape[0]})"
         raise UserError(f"{where} has shape {a.shape}, but {type_.name} needs {expected}")
     return a
+
+
+def _elements(where: str, type_: ArrayType, given: Any) -> dict[str, Any]:
+    """An array (N, size) or (N, size, k), or one for all lanes without the N, by the elements' numbers."""
+    a = np.asarray(given)
+    shape = (type_.size, *((type_.element.size,) if isinstance(type_.element, Vector) else ()))
+    if a.shape == shape:
+        a = a[None]
+    if a.shape[1:] != shape:
+        raise UserError(f"{where} has shape {a.shape}, but {type_.name} needs (N, {str(shape)[1:]}")
+    return {f.name: a[:, k] for k, f in enumerate(type_.fields)}
 
 
 def _numbers(where: str, element: Scalar, given: Any) -> Array:

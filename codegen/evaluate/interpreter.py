@@ -130,12 +130,22 @@ class _Frame:
                 value = self.expr(e.value)
                 assert isinstance(value, dict)
                 return value[e.name]
+            case ir.Index():
+                return self.element(self.expr(e.value), self.array(e.index))
             case ir.Swizzle():
                 columns = ["xyzw".index(c) for c in e.components]
                 a = self.array(e.value)
                 return a[:, columns[0]] if len(columns) == 1 else a[:, columns]
             case ir.Select():
                 return choose(self.array(e.condition), self.expr(e.if_true), self.expr(e.if_false))
+
+    def element(self, value: Value, index: Array) -> Value:
+        """The elements of an array that the lanes' numbers name."""
+        assert isinstance(value, dict)
+        found = value["0"]
+        for k in range(1, len(value)):
+            found = choose(index == k, value[str(k)], found)
+        return found
 
     def constant(self, e: ir.Const) -> Array:
         if e.type == F16 and self.arithmetic.is_half:

@@ -108,6 +108,8 @@ class Frame:
                 value = self.expr(e.value)
                 assert isinstance(value, dict)
                 return value[e.name]
+            case ir.Index():
+                return self.element(self.expr(e.value), self.expr(e.index))
             case ir.Swizzle():
                 vector = self.expr(e.value)
                 assert isinstance(vector, tuple)
@@ -117,6 +119,16 @@ class Frame:
                 condition, if_true, if_false = (self.expr(c) for c in ir.children(e))
                 assert isinstance(condition, Truth)
                 return choose(condition, if_true, if_false)
+
+    def element(self, value: Value, index: Value) -> Value:
+        """The element of an array, or the hull of those that the number may name."""
+        assert isinstance(value, dict)
+        assert isinstance(index, Whole)
+        found = value["0"]
+        for k in range(1, len(value)):
+            may, must = (index.low <= k) & (k <= index.high), (index.low == k) & (index.high == k)
+            found = choose(Truth(may, ~must), value[str(k)], found)
+        return found
 
     def shared(self, key: Hashable, make: Callable[[], Single]) -> Single:
         """The value under a key, made at its first use; what it is made of is kept alive with it."""

@@ -70,7 +70,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Construct:
-    """A vector from scalars (one: splat) or shorter vectors, or a struct from its fields in order."""
+    """A vector from scalars (one: splat) or shorter vectors, a struct or an array from its parts in order."""
 
     type: Type
     args: tuple[Expr, ...]
@@ -103,6 +103,15 @@ class Swizzle:
 
 
 @dataclass(frozen=True)
+class Index:
+    """An element of an array by an i32 or u32 that is one of its numbers."""
+
+    type: Type
+    value: Expr
+    index: Expr
+
+
+@dataclass(frozen=True)
 class Select:
     """`if_true if condition else if_false`; both sides are evaluated."""
 
@@ -112,7 +121,7 @@ class Select:
     if_false: Expr
 
 
-Expr = Const | Var | Unary | Binary | Builtin | Call | Construct | Convert | Member | Swizzle | Select
+Expr = Const | Var | Unary | Binary | Builtin | Call | Construct | Convert | Member | Swizzle | Index | Select
 
 
 @dataclass(frozen=True)
@@ -227,6 +236,8 @@ def children(e: Expr) -> tuple[Expr, ...]:
             return e.args
         case Member() | Swizzle():
             return (e.value,)
+        case Index():
+            return (e.value, e.index)
         case Select():
             return (e.condition, e.if_true, e.if_false)
         case _:
@@ -244,6 +255,8 @@ def rebuild(e: Expr, parts: tuple[Expr, ...]) -> Expr:
             return replace(e, args=parts)
         case Member() | Swizzle():
             return replace(e, value=parts[0])
+        case Index():
+            return replace(e, value=parts[0], index=parts[1])
         case Select():
             return replace(e, condition=parts[0], if_true=parts[1], if_false=parts[2])
         case _:

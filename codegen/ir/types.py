@@ -1,4 +1,4 @@
-"""Types of the IR: scalars, vectors and structs."""
+"""Types of the IR: scalars, vectors, structs and arrays."""
 
 from __future__ import annotations
 
@@ -44,7 +44,29 @@ class Struct:
         return next((f for f in self.fields if f.name == name), None)
 
 
+@dataclass(frozen=True)
+class Array(Struct):
+    """`size` values of one scalar or vector type, told apart by a number: a struct with the fields 0, 1, ...
+
+    Whatever handles structs field by field handles arrays. Sources name no arrays: passes and scenes make
+    them, as parameters and as constants.
+    """
+
+    element: Scalar | Vector
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+        return len(self.fields)
+
+
 Type = Scalar | Vector | Struct
+
+
+def array_of(element: Scalar | Vector, size: int) -> Array:
+    """The array type, named like vec3[8]."""
+    return Array(f"{element.name}[{size}]", tuple(Field(str(k), element) for k in range(size)), element)
+
 
 F32, I32, U32, BOOL = Scalar("f32"), Scalar("i32"), Scalar("u32"), Scalar("bool")
 VEC2, VEC3, VEC4 = (Vector(f"vec{n}", F32, n) for n in (2, 3, 4))
@@ -66,6 +88,10 @@ _SINGLES: dict[Type, Type] = {half: single for single, half in _HALVES.items()}
 
 def half_of(type_: Type) -> Type:
     """The type with f16 in place of f32, fields included."""
+    if isinstance(type_, Array):
+        element = half_of(type_.element)
+        assert not isinstance(element, Struct)
+        return array_of(element, type_.size)
     if isinstance(type_, Struct):
         return Struct(type_.name, tuple(replace(f, type=half_of(f.type)) for f in type_.fields))
     return _HALVES.get(type_, type_)
@@ -91,9 +117,11 @@ def vector_of(element: Scalar, size: int) -> Scalar | Vector | None:
 
 
 def leaves(type_: Type, path: str = "") -> list[tuple[str, Scalar]]:
-    """The scalars a value consists of, in order, with their access paths (".tangent.x")."""
+    """The scalars a value consists of, in order, with their access paths (".tangent.x", "[2].x")."""
     if isinstance(type_, Scalar):
         return [(path, type_)]
     if isinstance(type_, Vector):
         return [(f"{path}.{c}", type_.element) for c in "xyzw"[: type_.size]]
+    if isinstance(type_, Array):
+        return [leaf for f in type_.fields for leaf in leaves(f.type, f"{path}[{f.name}]")]
     return [leaf for f in type_.fields for leaf in leaves(f.type, f"{path}.{f.name}")]

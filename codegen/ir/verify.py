@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F16, F32, I32, U32, Struct, Type, Vector, element_of, vector_of
+from codegen.ir.types import BOOL, F16, F32, I32, U32, Array, Struct, Type, Vector, element_of, vector_of
 from codegen.ops import BUILTINS, OPERATORS
 
 
@@ -114,6 +114,9 @@ class _Checker:
             case ir.Member():
                 found_field = types[0].field(e.name) if isinstance(types[0], Struct) else None
                 return found_field.type if found_field else None
+            case ir.Index():
+                fits = isinstance(types[0], Array) and types[1] in (I32, U32)
+                return types[0].element if fits and isinstance(types[0], Array) else None
             case ir.Swizzle():
                 of = types[0]
                 inside = isinstance(of, Vector) and set(e.components) <= set("xyzw"[: of.size])

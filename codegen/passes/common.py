@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from codegen.ir import nodes as ir
+from codegen.ir.types import Array, Vector
 from codegen.names import reserved
 from codegen.passes.operations import expression_operations
 from codegen.passes.regions import Placement, is_trivial
@@ -40,23 +41,19 @@ def named_values(values: Values, placement: Placement, forced: Collection[int] =
         inner = sum(size[id(c)] for c in ir.children(e) if id(c) not in named)
         size[id(e)] = inner + sum(expression_operations(e).values())
         if is_trivial(e) or isinstance(e, ir.Construct):
-            if not is_trivial(e) and placement.uses[id(e)] > 1 and not _is_struct(e):
+            shared = not is_trivial(e) and placement.uses[id(e)] > 1 and isinstance(e.type, Vector)
+            if shared or (isinstance(e, ir.Construct) and isinstance(e.type, Array)):
                 named.add(id(e))
             continue
         moved = id(e) in placement.moved
+        assigned = id(e) in placement.assigned
         hint = values.hints.get(id(e), Hint(0, ""))
-        readable = (
-            hint.rank >= FIELD
-            and size[id(e)] >= WORTH_A_NAME
-            and (hint.rank >= LOCAL or size[id(e)] >= 2 * WORTH_A_NAME)
-        )
-        if placement.uses[id(e)] > 1 or moved or readable or size[id(e)] > TOO_LONG:
+        least = WORTH_A_NAME if hint.rank >= LOCAL else 2 * WORTH_A_NAME
+        readable = hint.rank >= FIELD and size[id(e)] >= least
+        long = not assigned and (readable or size[id(e)] > TOO_LONG)
+        if placement.uses[id(e)] > 1 or moved or long:
             named.add(id(e))
     return named
-
-
-def _is_struct(e: ir.Expr) -> bool:
-    return not hasattr(e.type, "size")
 
 
 class Names:

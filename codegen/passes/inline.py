@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 
 from codegen.errors import UserError
 from codegen.ir import nodes as ir
-from codegen.ir.types import I32, Struct, Type
+from codegen.ir.types import I32, Array, Struct, Type
 from codegen.library import Library
 from codegen.passes import branches
 from codegen.passes.flow import Branch, Carried, Flow, Item, Loop, Merge
@@ -232,7 +232,7 @@ class Inliner:
                 of = self.expr(e.value, scope)
                 assert isinstance(of, dict)
                 return of[e.name]
-            case ir.Construct() if isinstance(e.type, Struct):
+            case ir.Construct() if isinstance(e.type, Struct) and not isinstance(e.type, Array):
                 fields = zip(e.type.fields, e.args, strict=True)
                 return {f.name: self.named(self.expr(a, scope), f.name, FIELD) for f, a in fields}
             case ir.Call():

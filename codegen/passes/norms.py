@@ -10,7 +10,7 @@ import math
 
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Length, Unit
-from codegen.ir.types import Vector
+from codegen.ir.types import Array, Vector
 from codegen.passes.values import Values, constant_components
 
 UNIT_SLACK = 2.0**-19
@@ -27,6 +27,10 @@ def is_unit(values: Values, e: ir.Expr) -> bool:
         case ir.Var():
             known = values.parameters.get(e.name)
             return known is not None and isinstance(known.domain, Unit)
+        case ir.Index():
+            return is_unit(values, e.value)
+        case ir.Construct() if isinstance(e.type, Array):
+            return all(is_unit(values, a) for a in e.args)
         case ir.Builtin(op="normalize"):
             return True
         case ir.Unary(op="negate"):
@@ -48,7 +52,11 @@ def norm(values: Values, e: ir.Expr) -> float:
         return math.inf
     if is_unit(values, e):
         return 1.0 + UNIT_SLACK
+    if isinstance(e, ir.Index):
+        e = e.value
     match e:
+        case ir.Construct() if isinstance(e.type, Array):
+            return max(norm(values, a) for a in e.args)
         case ir.Var():
             known = values.parameters.get(e.name)
             if known is not None and isinstance(known.domain, Length):
@@ -60,11 +68,39 @@ def norm(values: Values, e: ir.Expr) -> float:
             return (norm(values, e.left) + norm(values, e.right)) * (1.0 + ROUNDING)
         case ir.Builtin(op="cross"):
             return _cross(values, *e.args)
+        case ir.Construct(args=(_, _, _)) if (pair := written_cross(e)) is not None:
+            return _cross(values, *pair)
         case ir.Select():
             return max(norm(values, e.if_true), norm(values, e.if_false))
         case _:
             numbers = constant_components(e)
             return math.inf if numbers is None else math.hypot(*map(float, numbers)) * (1.0 + ROUNDING)
+
+
+def written_cross(e: ir.Construct) -> tuple[ir.Expr, ir.Expr] | None:
+    """The operands of a cross product that is written out component by component; None for anything else."""
+    found: tuple[ir.Expr, ir.Expr] | None = None
+    for part, (i, j) in zip(e.args, (("y", "z"), ("z", "x"), ("x", "y")), strict=True):
+        match part:
+            case ir.Binary(
+                op="-",
+                left=ir.Binary(
+                    op="*",
+                    left=ir.Swizzle(value=a, components=first),
+                    right=ir.Swizzle(value=b, components=second),
+                ),
+                right=ir.Binary(
+                    op="*",
+                    left=ir.Swizzle(value=c, components=third),
+                    right=ir.Swizzle(value=d, components=fourth),
+                ),
+            ) if (first, second, third, fourth) == (i, j, j, i) and a is c and b is d:
+                if found is not None and (found[0] is not a or found[1] is not b):
+                    return None
+                found = a, b
+            case _:
+                return None
+    return found
 
 
 def _cross(values: Values, a: ir.Expr, b: ir.Expr) -> float:

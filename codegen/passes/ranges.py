@@ -7,9 +7,10 @@ one expression; lengths of vectors narrow products of directions (codegen.passes
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -23,9 +24,9 @@ from codegen.intervals.operations import VECTOR_BUILTINS, binary, scalar_builtin
 from codegen.intervals.values import Range, Single, Truth, Whole, choose, constant
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Finite, Interval, Length, Unit
-from codegen.ir.types import BOOL, F32, I32, Scalar, Type, Vector
+from codegen.ir.types import BOOL, F32, I32, Array, Scalar, Type, Vector
 from codegen.passes.norms import UNIT_SLACK, norm, product
-from codegen.passes.values import Values
+from codegen.passes.values import Values, any_element
 
 FACT_SLACK = 2.0**-19
 """A fact speaks of the exact quantity; a target may be so far off, relative to 1 or to its size."""
@@ -66,6 +67,16 @@ class Ranges:
                 found = [table.value(e) for table in self._tables]
             self._known[id(e)] = tuple(_hull(singles) for singles in zip(*found, strict=True))
         return self._known[id(e)]
+
+    def fact(self, e: ir.Expr) -> tuple[float, float] | None:
+        """What a fact says of an expression; one of an array speaks of each of its elements."""
+        if id(e) in self.facts or not self.facts:
+            return self.facts.get(id(e))
+        parts = ir.children(e)
+        if not any(isinstance(c, ir.Index) for c in parts):
+            return None
+        parts = tuple(any_element(self.values, c.value) if isinstance(c, ir.Index) else c for c in parts)
+        return self.facts.get(id(self.values.intern(ir.rebuild(e, parts))))
 
     def add_fact(self, e: ir.Expr, low: float, high: float) -> None:
         """One more fact; only before anything is asked."""
@@ -121,6 +132,11 @@ class _Table:
                 return found if isinstance(found, tuple) else (found,)
             case ir.Builtin():
                 return self.each(e.op, lambda a: scalar_builtin(context, e.op, a), parts)
+            case ir.Construct() if isinstance(e.type, Array):
+                columns = zip(*parts, strict=True)
+                return tuple(functools.reduce(_either, column) for column in columns)
+            case ir.Index():
+                return tuple(_either(s, s) for s in parts[0])  # another number may name another element
             case ir.Construct() if isinstance(e.type, Vector):
                 flat = tuple(s for p in parts for s in p)
                 return flat * e.type.size if len(flat) == 1 else flat
@@ -152,14 +168,15 @@ class _Table:
         if e.name in self.owner.values.indices:
             first, last = self.owner.values.indices[e.name]
             return (Whole(np.array([first]), np.array([last]), True),)
-        if known is None or known.domain is None or not _is_float(e.type):
-            return self.given(e.type, known)
+        type_ = e.type.element if isinstance(e.type, Array) else e.type
+        if known is None or known.domain is None or not _is_float(type_):
+            return self.given(type_, known)
         low, high = ends(known.domain)
         if 0.0 < low < SMALLEST:
             low = 0.0
         if -SMALLEST < high < 0.0:
             high = 0.0
-        size = e.type.size if isinstance(e.type, Vector) else 1
+        size = type_.size if isinstance(type_, Vector) else 1
         return tuple(_interval(low, high) for _ in range(size))
 
     def given(self, type_: Type, known: ir.Parameter | None) -> Bound:
@@ -194,8 +211,9 @@ class _Table:
         """The intervals cut to what facts and lengths say."""
         if not _is_float(e.type):
             return found
-        if id(e) in self.owner.facts:
-            low, high = self.owner.facts[id(e)]
+        fact = self.owner.fact(e)
+        if fact is not None:
+            low, high = fact
             slack = FACT_SLACK * max(1.0, *(abs(x) for x in (low, high) if math.isfinite(x)))
             found = tuple(_cut(s, low - slack, high + slack) for s in found)
         size = math.inf
@@ -227,6 +245,19 @@ def _pending(e: ir.Expr, known: Mapping[int, object]) -> list[ir.Expr]:
 
 def _is_float(type_: Type) -> bool:
     return type_ == F32 or (isinstance(type_, Vector) and type_.element == F32)
+
+
+def _either(a: Single, b: Single) -> Single:
+    """A value that is one of two, told apart from both."""
+    both = Truth(np.array([True]), np.array([True]))
+    if isinstance(a, Truth):
+        assert isinstance(b, Truth)
+        return Truth(a.true | b.true, a.false | b.false)
+    if a is b:
+        return replace(a)
+    found = choose(both, a, b)
+    assert isinstance(found, Range | Whole)
+    return found
 
 
 def _interval(low: float, high: float) -> Range:

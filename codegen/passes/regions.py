@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from codegen.ir import nodes as ir
+from codegen.ir.types import Array
 from codegen.passes.flow import Branch, Flow, Item
 
 
@@ -35,10 +36,11 @@ class Region:
 class Placement:
     """The regions of a flow, the region of every value, and how often each is used.
 
-    homes  id of a value -> region in which it is computed
-    uses   id of a value -> number of places that use it; what costs nothing counts for its operands instead
-    order  every value, those that use others first
-    moved  ids of values that are computed outside the regions that use them
+    homes     id of a value -> region in which it is computed
+    uses      id of a value -> number of places that use it; what costs nothing counts for its operands
+    order     every value, those that use others first
+    moved     ids of values that are computed outside the regions that use them
+    assigned  ids of values that a branch, a loop or the function gives as they are
     """
 
     root: Region
@@ -46,6 +48,7 @@ class Placement:
     uses: dict[int, int]
     order: list[ir.Expr]
     moved: set[int]
+    assigned: set[int]
 
 
 def place(flow: Flow, result: ir.Expr) -> Placement:
@@ -70,7 +73,7 @@ def place(flow: Flow, result: ir.Expr) -> Placement:
         for child in ir.children(e):
             use(child, home, times)
     moved = {key for key, home in homes.items() if home is not wanted[key]}
-    return Placement(root, homes, uses, order, moved)
+    return Placement(root, homes, uses, order, moved, {id(e) for e, _ in used})
 
 
 def is_trivial(e: ir.Expr) -> bool:
@@ -82,6 +85,10 @@ def is_trivial(e: ir.Expr) -> bool:
             return True
         case ir.Unary(op="negate"):
             return isinstance(e.operand, ir.Const | ir.Var)
+        case ir.Index():
+            return isinstance(e.value, ir.Var) and isinstance(e.index, ir.Var | ir.Const)
+        case ir.Construct() if isinstance(e.type, Array):
+            return False
         case ir.Construct():
             return all(isinstance(a, ir.Const) for a in e.args)
         case _:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import Struct, Type
+from codegen.ir.types import Array, Struct, Type
 from codegen.ir.unit import Unit
 
 
@@ -17,7 +17,7 @@ def add_prefix(unit: Unit, prefix: str) -> Unit:
     """The unit with prefixed names."""
 
     def type_(t: Type) -> Type:
-        if not isinstance(t, Struct):
+        if not isinstance(t, Struct) or isinstance(t, Array):
             return t
         return Struct(prefix + t.name, tuple(replace(f, type=type_(f.type)) for f in t.fields))
 

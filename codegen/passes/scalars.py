@@ -1,7 +1,7 @@
 """Components: those of a constructed vector are its operands; vectors stay whole where all parts are used.
 
-before   vec3(a, b, c).y        vec3(v.x, v.y, v.z)     vec3(s, s, s)
-after    b                      v                       vec3(s)
+before   vec3(a, b, c).y        vec3(v.x, v.y, v.z)     vec3(s, s, s)     array(a, b)[1]
+after    b                      v                       vec3(s)           b
 
 Structs never become values: inlining keeps them as their fields.
 """
@@ -22,6 +22,8 @@ def components(values: Values, e: ir.Expr) -> Rewrite | None:
         found = _chosen(values, e)
     elif isinstance(e, ir.Construct) and isinstance(e.type, Vector):
         found = _joined(values, e)
+    elif isinstance(e, ir.Index) and isinstance(e.value, ir.Construct):
+        found = e.value.args[int(e.index.value)] if isinstance(e.index, ir.Const) else None
     elif isinstance(e, ir.Convert) and e.operand.type == e.type:
         found = e.operand
     else:

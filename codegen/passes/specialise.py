@@ -30,7 +30,7 @@ from codegen.passes.powers import whole_exponents
 from codegen.passes.ranges import Ranges
 from codegen.passes.scalars import components
 from codegen.passes.schedule import statements
-from codegen.passes.subject import Fact, Subject
+from codegen.passes.subject import Fact, Subject, is_taken_apart
 from codegen.passes.sums import cancelled
 from codegen.passes.values import Rule, Step, Values, constant_components, leaves
 
@@ -227,7 +227,8 @@ def _doc(library: Library, function: ir.Function, names: Mapping[str, str], subj
 
     def visit(path: str, type_: Type, text: str) -> None:
         texts[path] = text
-        if isinstance(type_, Struct):
+        if is_taken_apart(type_):
+            assert isinstance(type_, Struct)
             fields = library.struct(type_.name).doc.entries
             for f in type_.fields:
                 visit(f"{path}.{f.name}", f.type, fields.get(f.name, ""))

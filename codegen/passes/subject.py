@@ -17,9 +17,9 @@ import numpy as np
 from codegen.errors import UserError, unknown
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Finite, Interval, Length, Unit, number
-from codegen.ir.types import BOOL, F32, Scalar, Struct, Type, Vector
+from codegen.ir.types import BOOL, F32, Array, Scalar, Struct, Type, Vector
 from codegen.passes import patterns
-from codegen.passes.values import Value, Values
+from codegen.passes.values import PARAMETER, Value, Values, any_element
 
 TOLERANCE = 1e-6
 """How far a constant's length may be from what its domain says."""
@@ -60,7 +60,8 @@ class Subject:
 
     def _enter(self, path: str, type_: Type, domain: Domain | None) -> None:
         self.types[path], self.domains[path] = type_, domain
-        if isinstance(type_, Struct):
+        if is_taken_apart(type_):
+            assert isinstance(type_, Struct)
             for f in type_.fields:
                 self._enter(f"{path}.{f.name}", f.type, f.domain)
 
@@ -100,7 +101,7 @@ class Subject:
         if path in self.constants or path in self.aliases:
             raise UserError(f"{where} has a range although it is not a parameter any more")
         low, high = map(float, ends)
-        if isinstance(type_, Struct) or isinstance(domain, Unit | Length) or type_ == BOOL:
+        if is_taken_apart(type_) or isinstance(domain, Unit | Length) or type_ == BOOL:
             raise UserError(f"{where} is a {type_.name} and has no range")
         if not (math.isfinite(low) and math.isfinite(high)):
             raise UserError(f"{where}: a range has finite ends")
@@ -118,7 +119,7 @@ class Subject:
         parameters = {
             path: ir.Parameter(path, type_, self.domains[path])
             for path, type_ in self.types.items()
-            if not isinstance(type_, Struct)
+            if not is_taken_apart(type_)
         }
         values.parameters = parameters
         return {p.name: self._argument(values, p.name, p.type) for p in self.function.parameters}
@@ -131,12 +132,15 @@ class Subject:
             target = self.aliases[path]
             values.note("substitute", f"{path} = {target}", "given as equal")
             return self._argument(values, target, self.types[target])
-        if isinstance(type_, Struct):
+        if is_taken_apart(type_):
+            assert isinstance(type_, Struct)
             return {f.name: self._argument(values, f"{path}.{f.name}", f.type) for f in type_.fields}
         return values.intern(ir.Var(type_, path))
 
     def _constant(self, values: Values, path: str, type_: Type, given: Any) -> Value:
         where = f"{self.function.name}: {path}"
+        if isinstance(type_, Array):
+            return self._constant_array(values, where, path, type_, given)
         if isinstance(type_, Struct):
             names = [f.name for f in type_.fields]
             if not isinstance(given, Mapping):
@@ -153,10 +157,20 @@ class Subject:
             }
         numbers = _numbers(where, type_, given)
         self._check_domain(where, self.domains[path], numbers)
-        if isinstance(type_, Vector):
-            parts = tuple(values.build(ir.Const(type_.element, n)) for n in numbers)
-            return values.build(ir.Construct(type_, parts))
-        return values.build(ir.Const(type_, numbers[0]))
+        return _constant_of(values, type_, numbers)
+
+    def _constant_array(self, values: Values, where: str, path: str, type_: Array, given: Any) -> Value:
+        rows = list(given.values()) if isinstance(given, Mapping) else given
+        if not isinstance(rows, Sequence | np.ndarray) or len(rows) != type_.size:
+            raise UserError(f"{where} needs {type_.size} elements")
+        parts: list[ir.Expr] = []
+        for k, row in enumerate(rows):
+            numbers = _numbers(f"{where}[{k}]", type_.element, row)
+            self._check_domain(f"{where}[{k}]", self.domains[path], numbers)
+            parts.append(_constant_of(values, type_.element, numbers))
+        made = values.build(ir.Construct(type_, tuple(parts)))
+        values.hint(made, path.rpartition(".")[2], PARAMETER)
+        return made
 
     @staticmethod
     def _check_domain(where: str, domain: Domain | None, numbers: Sequence[float | int | bool]) -> None:
@@ -190,6 +204,8 @@ class Subject:
                 path = name.replace("__", ".")
                 if path in self.types:
                     found = self._argument(values, path, self.types[path])
+                    if isinstance(found, ir.Expr) and isinstance(found.type, Array):
+                        found = any_element(values, found)
                     if isinstance(found, dict):
                         raise UserError(f"{where}: {path} is a {self.types[path].name}")
                     names[name] = found
@@ -198,6 +214,18 @@ class Subject:
             return patterns.make(flat, names, values, F32), fact.low, fact.high
         except (SyntaxError, ValueError, KeyError, AssertionError, StopIteration):
             raise UserError(f"{where} is no expression of built-ins and parameters") from None
+
+
+def is_taken_apart(type_: Type) -> bool:
+    """Whether parameters of a type are known field by field: structs are, arrays stay whole."""
+    return isinstance(type_, Struct) and not isinstance(type_, Array)
+
+
+def _constant_of(values: Values, type_: Scalar | Vector, numbers: Sequence[float | int | bool]) -> ir.Expr:
+    if isinstance(type_, Vector):
+        parts = tuple(values.build(ir.Const(type_.element, n)) for n in numbers)
+        return values.build(ir.Construct(type_, parts))
+    return values.build(ir.Const(type_, numbers[0]))
 
 
 def _flattened(pattern: ast.expr) -> ast.expr:

@@ -45,6 +45,8 @@ def show(e: ir.Expr, name: Callable[[ir.Expr], str | None] = lambda e: None) -> 
                 return f"{enclosed(x.value, depth)}.{x.name}"
             case ir.Swizzle():
                 return f"{enclosed(x.value, depth)}.{x.components}"
+            case ir.Index():
+                return f"{enclosed(x.value, depth)}[{operand(x.index, depth)}]"
             case ir.Builtin() | ir.Call():
                 called = x.op if isinstance(x, ir.Builtin) else x.function
                 return f"{called}({', '.join(operand(a, depth) for a in x.args)})"

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, Scalar, Type, Vector
+from codegen.ir.types import F32, I32, Array, Scalar, Type, Vector
 from codegen.passes.text import show
 
 COMMUTATIVE = frozenset({"+", "*", "min", "max", "dot", "and", "or", "==", "!=", "&", "|", "^"})
@@ -188,6 +188,13 @@ def _key(e: ir.Expr) -> tuple[object, ...]:
             return ("swizzle", e.components, *parts)
         case _:
             return (type(e), e.type.name, *parts)
+
+
+def any_element(values: Values, array: ir.Expr) -> ir.Expr:
+    """An element of an array with a number of its own, which stands for every number in facts."""
+    assert isinstance(array.type, Array)
+    number = values.intern(ir.Var(I32, "any element"))
+    return values.intern(ir.Index(array.type.element, array, number))
 
 
 def leaves(value: Value) -> Iterable[ir.Expr]:

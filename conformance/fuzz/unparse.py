@@ -93,5 +93,7 @@ def expression(e: ir.Expr) -> ast.expr:
             return ast.Attribute(parts[0], e.name, ast.Load())
         case ir.Swizzle():
             return ast.Attribute(parts[0], e.components, ast.Load())
+        case ir.Index():
+            return ast.Subscript(parts[0], parts[1], ast.Load())
         case ir.Select():
             return ast.IfExp(*parts)

@@ -5,6 +5,7 @@
 (operator, operands...)   operators as C spells them; "?:" with condition, value if true, value if false
 ("call", name, args...)   functions, constructors and conversions, by their spelling in the language
 (".", operand, name)      fields and components
+("[]", operand, index)    elements of arrays
 """
 
 import re
@@ -66,6 +67,8 @@ def of_ir(e: ir.Expr, dialect: Dialect) -> Neutral:
             return (".", of(e.value), e.name)
         case ir.Swizzle():
             return (".", of(e.value), e.components)
+        case ir.Index():
+            return ("[]", of(e.value), of(e.index))
         case ir.Select():
             return ("?:", of(e.condition), of(e.if_true), of(e.if_false))
 

@@ -1,0 +1,197 @@
+"""Arrays: many lights as one parameter, numbered by a loop, and tables of constants.
+
+Plan. A function that sums over an array of directions and colours is built by hand, since sources name no
+arrays. It verifies, evaluates to the sum, its intervals hold every result, each target's compiler takes it
+(dynamic numbers of parameters and of local tables included), and specialising keeps the loop, takes constant
+elements, and knows what facts say of every element.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from codegen.backends import dialect
+from codegen.emit.dialect import Dialect
+from codegen.emit.module import emit
+from codegen.emit.stmt import StmtPrinter
+from codegen.errors import Place, UserError
+from codegen.evaluate import evaluate
+from codegen.intervals import TABLES, permitted
+from codegen.ir import nodes as ir
+from codegen.ir.domains import Interval, Unit
+from codegen.ir.types import F32, I32, U32, VEC3, array_of, half_of, leaves
+from codegen.ir.verify import MalformedIRError, verify
+from codegen.kernels import kernel
+from codegen.library import load_library
+from codegen.passes.specialise import specialise
+from conformance.unit.support.dialects import DIALECTS, ONE_PER_TARGET, dialect_id, validate
+from conformance.unit.support.trees import no_function
+
+LIBRARY = load_library()
+LIGHTS = 12
+LANES = 50
+DIRECTIONS, COLOURS = array_of(VEC3, LIGHTS), array_of(VEC3, LIGHTS)
+GLSL = StmtPrinter(dialect("glsl", None))
+
+
+def element(name: str) -> ir.Expr:
+    return ir.Index(VEC3, ir.Var(DIRECTIONS, name), ir.Var(I32, "i"))
+
+
+def lambert_sum() -> ir.Function:
+    """for each light: total + max(n . l[i], 0) light[i]"""
+    cosine = ir.Builtin(F32, "dot", (ir.Var(VEC3, "n"), element("l")))
+    lit = ir.Builtin(F32, "max", (cosine, ir.Const(F32, 0.0)))
+    total = ir.Var(VEC3, "total")
+    added = ir.Binary(VEC3, "+", total, ir.Binary(VEC3, "*", lit, element("light")))
+    parameters = (
+        ir.Parameter("n", VEC3, Unit()),
+        ir.Parameter("l", DIRECTIONS, Unit()),
+        ir.Parameter("light", COLOURS, Interval(0.0, 10.0)),
+    )
+    body = (
+        ir.Let("total", ir.Construct(VEC3, (ir.Const(F32, 0.0),)), True),
+        ir.For("i", 0, LIGHTS, (ir.Assign("total", added),)),
+        ir.Return(total),
+    )
+    place = Place("test", 1)
+    return ir.Function("lambert_sum", "", "base", None, parameters, VEC3, body, ir.Doc("Sum.", {}), place)
+
+
+EXTENDED = LIBRARY.with_functions([lambert_sum()])
+
+
+def inputs() -> dict[str, np.ndarray]:
+    random = np.random.default_rng(3)
+
+    def directions(*shape: int) -> np.ndarray:
+        a = random.normal(size=(*shape, 3))
+        return np.asarray(a / np.linalg.norm(a, axis=-1, keepdims=True), np.float32)
+
+    light = random.uniform(0.0, 10.0, (LANES, LIGHTS, 3)).astype(np.float32)
+    return {"n": directions(LANES), "l": directions(LANES, LIGHTS), "light": light}
+
+
+def test_leaves_are_the_elements_in_order() -> None:
+    assert [path for path, _ in leaves(array_of(VEC3, 2))] == [
+        "[0].x",
+        "[0].y",
+        "[0].z",
+        "[1].x",
+        "[1].y",
+        "[1].z",
+    ]
+    assert half_of(array_of(VEC3, 2)).name == "hvec3[2]"
+
+
+def test_sum_over_an_array_and_its_intervals() -> None:
+    x = inputs()
+    verify(lambert_sum(), no_function)
+    exact = np.einsum(
+        "ni,nic->nc", np.maximum(np.einsum("nc,nic->ni", x["n"], x["l"], dtype=np.float64), 0.0), x["light"]
+    )
+    double = evaluate(EXTENDED, "lambert_sum", x, "float64")
+    assert isinstance(double, np.ndarray)
+    np.testing.assert_allclose(double, exact, rtol=1e-12)
+    single = evaluate(EXTENDED, "lambert_sum", x)
+    for table in TABLES:
+        allowed = permitted(EXTENDED, "lambert_sum", x, table)
+        assert allowed.guaranteed.all()
+        assert allowed.contains(single).all()
+
+
+def test_index_that_lanes_choose() -> None:
+    """An element by a parameter: what a lane names, and the hull where a table leaves the number open."""
+    type_ = array_of(F32, 4)
+    table = ir.Construct(type_, tuple(ir.Const(F32, float(k * k)) for k in range(4)))
+    body = (ir.Let("squares", table), ir.Return(ir.Index(F32, ir.Var(type_, "squares"), ir.Var(U32, "k"))))
+    f = ir.Function(
+        "pick", "", "base", None, (ir.Parameter("k", U32, None),), F32, body, ir.Doc("", {}), Place("", 1)
+    )
+    extended = LIBRARY.with_functions([f])
+    k = np.array([0, 1, 2, 3, 2], np.uint32)
+    np.testing.assert_array_equal(evaluate(extended, "pick", {"k": k}), k.astype(np.float32) ** 2)
+    assert permitted(extended, "pick", {"k": k}, "wgsl").contains(k.astype(np.float32) ** 2).all()
+    made = specialise(extended, "pick", new_name="g")
+    assert GLSL.block(made.function.body, "") == [
+        "float squares[4] = float[4](0.0, 1.0, 4.0, 9.0);",
+        "return squares[k];",
+    ]
+    assert GLSL.block(specialise(extended, "pick", {"k": 3}, new_name="g").function.body, "") == [
+        "return 9.0;"
+    ]
+
+
+@pytest.mark.parametrize("target", [d for d in DIALECTS if d in ONE_PER_TARGET], ids=dialect_id)
+def test_compilers_take_arrays(target: Dialect) -> None:
+    known = {"light": [[1.0, 0.5, 0.25]] * LIGHTS}
+    table = specialise(EXTENDED, "lambert_sum", constants=known, new_name="table_sum").function
+    both = EXTENDED.with_functions([table])
+    text = emit(both, target, ["lambert_sum", "table_sum"])
+    assert "[i]" in text
+    validate(text, target)
+
+
+@pytest.mark.parametrize("target", ["glsl", "wgsl", "opencl"])
+def test_kernels_load_arrays_word_by_word(target: str) -> None:
+    assert f"load_f32({3 * (1 + 2 * LIGHTS) - 1}" in kernel(EXTENDED, "lambert_sum", target)
+
+
+def test_loop_is_kept_or_unrolled() -> None:
+    x = inputs()
+    general = evaluate(EXTENDED, "lambert_sum", x)
+    for unroll in (8, 16):
+        made = specialise(EXTENDED, "lambert_sum", new_name="g", unroll=unroll)
+        verify(made.function, no_function)
+        assert any(isinstance(s, ir.For) for s in made.function.body) == (unroll < LIGHTS)
+        again = evaluate(LIBRARY.with_functions([made.function]), "g", made.arguments(x))
+        np.testing.assert_array_equal(again, general)
+
+
+def test_fact_speaks_of_every_element() -> None:
+    made = specialise(EXTENDED, "lambert_sum", facts=[("dot(n, l)", 0.1, 1.0)], new_name="g")
+    assert "max(" not in "".join(GLSL.block(made.function.body, ""))
+    (step,) = [s for s in made.log if s.name == "ranges"]
+    assert "dot(n, l[i" in step.what
+
+
+def test_constant_direction_for_every_light() -> None:
+    made = specialise(EXTENDED, "lambert_sum", {"l": [[0.0, 0.0, 1.0]] * LIGHTS}, new_name="g", unroll=16)
+    assert list(made.parameters) == ["n", "light"]
+    assert "dot(" not in "".join(GLSL.block(made.function.body, ""))
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ([[0.0, 0.0, 1.0]] * 3, "l needs 12 elements"),
+        ([[0.0, 0.0, 2.0]] * LIGHTS, r"l\[0\] is \(0, 0, 2\), which is no unit vector"),
+        (1.0, "l needs 12 elements"),
+    ],
+)
+def test_wrong_constants(given: object, sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence):
+        specialise(EXTENDED, "lambert_sum", {"l": given})
+
+
+def test_wrong_shape_of_an_input() -> None:
+    with pytest.raises(UserError, match=r"l has shape \(50, 3\), but vec3\[12\] needs \(N, 12, 3\)"):
+        evaluate(EXTENDED, "lambert_sum", {**inputs(), "l": inputs()["n"]})
+
+
+def test_index_of_no_array_is_malformed() -> None:
+    bad = ir.Index(F32, ir.Var(VEC3, "n"), ir.Const(I32, 0))
+    f = ir.Function(
+        "f",
+        "",
+        "base",
+        None,
+        (ir.Parameter("n", VEC3, None),),
+        F32,
+        (ir.Return(bad),),
+        ir.Doc("", {}),
+        Place("", 1),
+    )
+    with pytest.raises(MalformedIRError, match="Index is marked f32 but gives None"):
+        verify(f, no_function)
