@@ -34,7 +34,7 @@ def ggx_sample(u: UniformPair, v: Direction, alpha_x: Roughness, alpha_y: Roughn
     a = u.y * depth
     cap = sqrt(max(a * (2.0 - a), 0.0)) * unit_circle(u.x)
     slope = alpha_x * (cap.x + w.x)
-    x = slope + (TINY_SLOPE if slope >= 0.0 else -TINY_SLOPE)
+    x = slope + TINY_SLOPE if slope >= 0.0 else slope - TINY_SLOPE
     y = alpha_y * (cap.y + w.y)
     h = normalize(vec3(x, y, (1.0 - u.y) * depth))
     r = mirror(v, h)
