@@ -36,10 +36,10 @@ def satin_facet_density(g: Annotated[vec3, Interval(-2.0, 2.0)], spread: Spread,
     along = g.x * g.x
     k = 1.0 / max(across + along, TINY_SQUARE)
     sine_squared = max(along * k, SMALLEST_SHARE)
-    log_square = min(log_cosine_squared(sine_squared, max(across * k, SMALLEST_SHARE)), -SMALLEST_SHARE)
+    decay = max(-log_cosine_squared(sine_squared, max(across * k, SMALLEST_SHARE)), SMALLEST_SHARE)
     m = exponent + 1.0
-    bell = max(one_minus_exp_neg(-0.5 * m * log_square), SMALLEST_BELL)
+    bell = max(one_minus_exp_neg(0.5 * m * decay), SMALLEST_BELL)
     quotient = min(sine_squared / bell, LARGEST_QUOTIENT)
-    power = exp(max(0.5 * (exponent - 1.0) * log_square, -EXP_LIMIT))
+    power = exp(max(0.5 * (1.0 - exponent) * decay, -EXP_LIMIT))
     density = 0.125 * m * power * sqrt(quotient) / spread
     return density if abs(g.y) * edge.x < abs(g.z) * edge.y else 0.0
