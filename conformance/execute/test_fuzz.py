@@ -12,7 +12,7 @@ Known benign differences are kept out by the generator: see conformance/fuzz/exp
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,11 +23,13 @@ from codegen.emit import precedence
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.execute import Words
+from conformance.executor import Here, Job, Processes, Result
 from conformance.fuzz.case import HEADER, Case, draw_inputs, make_case
 from conformance.fuzz.engine import LANES, Finding, Tally, run_cases
 from conformance.fuzz.reduce import Reduced, reduce, wrong_value
 from conformance.fuzz.report import explain
 from conformance.fuzz.source import write
+from conformance.fuzz.task import COUNTS, ENDED, TASK, pieces, run_jobs
 from conformance.fuzz.unparse import functions_text
 from conformance.programs import judge
 from targets import TARGETS, Runtime, TargetUnavailable, open_runtime, probe
@@ -70,10 +72,38 @@ def test_random_programs_are_right(part: int, runtimes: list[Runtime]) -> None:
 @pytest.mark.nightly
 @pytest.mark.timeout(6 * 3600)
 def test_many_random_programs_are_right(runtimes: list[Runtime]) -> None:
-    tally = Tally()
-    run_cases(range(NIGHTLY), SEED + 1, runtimes, tally)
+    """On two processes, since a compiler that panics ends the one in which it runs."""
+    jobs = pieces(SEED + 1, 0, NIGHTLY, [r.device.target for r in runtimes])
+    tally = run_jobs(Processes(2), jobs)
     print("\n".join(tally.lines()))
     assert_none(tally, runtimes)
+
+
+def test_jobs_find_what_one_run_finds(runtimes: list[Runtime]) -> None:
+    runtime = runtimes[0]
+    tally = Tally()
+    run_cases(range(300, 330), SEED, [runtime], tally)
+    jobs = [Job(TASK, "", runtime.device.target, k, k + 10, seed=SEED) for k in range(300, 330, 10)]
+    assert run_jobs(Here(), jobs) == tally
+    made = pieces(SEED, 5, 450, ["glsl", "wgsl"])
+    assert [(job.start, job.stop) for job in made] == [(5, 205), (205, 405), (405, 455)]
+    assert {job.targets for job in made} == {("glsl", "wgsl")}
+
+
+def test_a_program_that_ends_its_process_is_found() -> None:
+    """Program 7 kills whoever runs it on the target b."""
+
+    class Fragile:
+        def run(self, jobs: Iterable[Job]) -> Iterator[Result]:
+            for job in jobs:
+                fatal = job.start <= 7 < job.stop and "b" in job.targets
+                none = {"programs": job.stop - job.start, "findings": []}
+                counts: dict[str, Any] = {name: {} for name in COUNTS}
+                yield Result(job, {} if fatal else {**none, **counts}, "it died" if fatal else "")
+
+    tally = run_jobs(Fragile(), [Job(TASK, "", "a,b", 0, 10, seed=SEED), Job(TASK, "", "a,b", 10, 20)])
+    (found,) = tally.findings
+    assert (found.case.number, found.kind, found.backend, found.detail) == (7, ENDED, "b", "it died")
 
 
 def first_value_finding(runtimes: list[Runtime], most: int = 400) -> Finding:
@@ -121,6 +151,8 @@ def test_a_broken_printer_is_found_and_reduced(
 
 class BadDevice:
     """A device that stores 2.0 everywhere."""
+
+    half_arithmetic = False
 
     def __init__(self, device: Any) -> None:
         self.device = device

@@ -2,7 +2,8 @@
 
 python -m conformance.fuzz                        1000 programs on every target that is here
 python -m conformance.fuzz --seed 1 --case 17     that program alone, with its reduction if it fails
-python -m conformance.fuzz --count 100000         as many programs as that
+python -m conformance.fuzz --count 100000 --workers 2
+                                                  as many as that, on processes that may die
 python -m conformance.fuzz --refusals             damaged sources instead
 """
 
@@ -13,9 +14,11 @@ import time
 
 import click
 
+from conformance.executor import open_executor
 from conformance.fuzz.engine import Tally, run_cases
 from conformance.fuzz.refusals import MUTANTS, Refusals, read_damaged
 from conformance.fuzz.report import explain
+from conformance.fuzz.task import pieces, run_jobs
 from targets import TARGETS, Runtime, TargetUnavailable, open_runtime
 
 
@@ -26,8 +29,17 @@ from targets import TARGETS, Runtime, TargetUnavailable, open_runtime
 @click.option("--count", default=1000, show_default=True, help="How many programs.")
 @click.option("--target", "names", multiple=True, type=click.Choice(TARGETS), help="Targets; all by default.")
 @click.option("--refusals", is_flag=True, help="Damage the sources; each must be read or refused in words.")
+@click.option("--workers", default=1, show_default=True, help="Processes of this machine.")
+@click.option("--scheduler", help="Use the workers of a Dask scheduler: tcp://host:8786.")
 def main(
-    seed: int, number: int | None, first: int, count: int, names: tuple[str, ...], refusals: bool
+    seed: int,
+    number: int | None,
+    first: int,
+    count: int,
+    names: tuple[str, ...],
+    refusals: bool,
+    workers: int,
+    scheduler: str | None,
 ) -> None:
     """Make random programs, run them on every target, judge the results by interval."""
     numbers = range(first, first + count) if number is None else range(number, number + 1)
@@ -40,7 +52,11 @@ def main(
         sys.exit(bool(read.crashes))
     runtimes = open_targets(names or TARGETS)
     tally = Tally()
-    run_cases(numbers, seed, runtimes, tally)
+    if workers > 1 or scheduler:
+        jobs = pieces(seed, numbers.start, len(numbers), [r.device.target for r in runtimes])
+        tally = run_jobs(open_executor(workers, scheduler), jobs)
+    else:
+        run_cases(numbers, seed, runtimes, tally)
     for finding in tally.findings:
         print(explain(finding, runtimes))
     print("\n".join(tally.lines()))

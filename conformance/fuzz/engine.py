@@ -35,7 +35,7 @@ NUMPY, PYTHON = "numpy", "python"
 
 @dataclass(frozen=True)
 class Finding:
-    """What went wrong with one program. `kind`: refused, malformed, crash, build or value."""
+    """What went wrong with one program. `kind`: refused, malformed, crash, build, value or ended."""
 
     case: Case
     kind: str
