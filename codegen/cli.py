@@ -21,6 +21,7 @@ COMMANDS = {
     "doctor": "codegen.commands.doctor:command",
     "env": "codegen.commands.env:command",
     "factor": "codegen.commands.factor:command",
+    "table": "codegen.commands.table:command",
     "check": "conformance.commands.check:command",
     "scene": "codegen.commands.scene:command",
     "render": "conformance.commands.render:command",

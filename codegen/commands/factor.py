@@ -57,7 +57,7 @@ def command(
     console = Console(stderr=True)
     how = Settings(size_p, size_q, size_r, smoothness)
     with console.status("fitting"):
-        factors, measured, name = fitted(source, _numbers(settings), diffuse, samples, how)
+        factors, measured, name = fitted(source, numbers(settings), diffuse, samples, how)
     write_folder(output, files(factors, measured, name, kind))
     if console.is_terminal and measured is not None:
         console.print(
@@ -110,7 +110,8 @@ def _short(value: float | int) -> float | int:
     return value if isinstance(value, int) else float(f"{value:.4g}")
 
 
-def _numbers(settings: tuple[str, ...]) -> dict[str, float]:
+def numbers(settings: tuple[str, ...]) -> dict[str, float]:
+    """The numbers of --set NAME=NUMBER options by name; raises UserError for one that is none."""
     found = {}
     for setting in settings:
         name, equals, value = setting.partition("=")
