@@ -7,8 +7,10 @@ from pathlib import Path
 import click
 
 from codegen.backends import dialect
+from codegen.choice import MEASURES, choose_all, describe
 from codegen.emit.dialect import with_half, with_precise
 from codegen.emit.module import emit
+from codegen.errors import UserError
 from codegen.files import write_text
 from codegen.library import load_library
 
@@ -30,6 +32,18 @@ from codegen.library import load_library
     show_default=True,
     help="half: WGSL f16, GLSL mediump, OpenCL half; for the functions that are of use in it.",
 )
+@click.option(
+    "--max-error",
+    type=click.FloatRange(min=0.0),
+    help="Of each function the cheapest recorded variant whose error on the whole domain is no larger.",
+)
+@click.option(
+    "--measure",
+    type=click.Choice(MEASURES),
+    default="absolute",
+    show_default=True,
+    help="With --max-error: what the error is measured in.",
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write this file instead of printing.")
 def command(
     target: str,
@@ -38,14 +52,30 @@ def command(
     prefix: str | None,
     precise: bool,
     precision: str,
+    max_error: float | None,
+    measure: str,
     output: Path | None,
 ) -> None:
     """Emit one self-contained include; all functions if none is named."""
     chosen = dialect(target, dialect_name)
     chosen = with_precise(chosen) if precise else chosen
     chosen = with_half(chosen) if precision == "half" else chosen
-    text = emit(load_library(), chosen, list(functions) or None, prefix)
+    names = list(functions) or None
+    if max_error is not None:
+        if precision == "half":
+            raise UserError("--max-error chooses by errors in single precision; leave out --precision half")
+        names = choose_names(target, names, max_error, measure)
+    text = emit(load_library(), chosen, names, prefix)
     if output is None:
         click.echo(text, nl=False)
     else:
         write_text(output, text)
+
+
+def choose_names(target: str, names: list[str] | None, limit: float, measure: str) -> list[str]:
+    """What to emit for these functions; says on standard error what it was chosen from."""
+    choices = choose_all(load_library(), target, names, limit, measure)
+    for choice in choices:
+        for line in describe(choice, target, limit, measure):
+            click.echo(line, err=True)
+    return [choice.chosen for choice in choices]
