@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -15,7 +15,7 @@ from codegen.emit.module import DEFAULT_PREFIX, HALF_PREFIX, emit
 from codegen.emit.stmt import StmtPrinter
 from codegen.half import half_rules
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F16, F32, I32, Scalar, Struct, Type, leaves
+from codegen.ir.types import BOOL, F16, F32, I32, Array, Scalar, Struct, Type, leaves
 from codegen.ir.unit import Unit
 from codegen.library import Library
 from codegen.passes.half import half_versions
@@ -80,7 +80,7 @@ def literal_kernel(
     for j in range(count):
         arguments = [_constant(p.type, inputs[p.name], j) for p in function.parameters]
         call = ir.Call(function.returns, function.name, tuple(arguments))
-        lines += printer.block((ir.Let(f"result_{j}", call),), "    ")
+        lines += printer.block(_result(f"result_{j}", call), "    ")
         lines += _stores(function.returns, f"result_{j}", j * len(slots), printer)
     return _complete(library, name, target, options, lines)
 
@@ -117,7 +117,7 @@ def _complete(library: Library, name: str, target: str, options: KernelOptions, 
 
 def _single(function: ir.Function, chosen: Dialect) -> list[str]:
     printer = StmtPrinter(chosen)
-    lines = printer.block((ir.Let("result", _loaded_call(function)),), "    ")
+    lines = printer.block(_result("result", _loaded_call(function)), "    ")
     return [*lines, *_stores(function.returns, "result", 0, printer)]
 
 
@@ -127,9 +127,21 @@ def _pair(function: ir.Function, chosen: Dialect) -> list[str]:
     calls, stores = [], []
     for j in range(2):
         take = f"    harness_take({j}{'' if chosen.target == 'wgsl' else 'u'});"
-        calls += [take, *printer.block((ir.Let(f"result_{j}", _loaded_call(function)),), "    ")]
+        calls += [take, *printer.block(_result(f"result_{j}", _loaded_call(function)), "    ")]
         stores += [take, *_stores(function.returns, f"result_{j}", 0, printer)]
     return [*calls, *stores]
+
+
+def _result(name: str, call: ir.Call) -> tuple[ir.Stmt, ...]:
+    """The local that holds a call's value; arrays are handed over by name, as C wants it."""
+    body: list[ir.Stmt] = []
+    arguments: list[ir.Expr] = []
+    for k, a in enumerate(call.args):
+        if isinstance(a.type, Array):
+            body.append(ir.Let(f"{name}_array_{k}", a))
+            a = ir.Var(a.type, f"{name}_array_{k}")
+        arguments.append(a)
+    return (*body, ir.Let(name, replace(call, args=tuple(arguments))))
 
 
 def _loaded_call(function: ir.Function) -> ir.Call:

@@ -104,6 +104,8 @@ class _Checker:
             case ir.Builtin():
                 return BUILTINS[e.op].result(types) if e.op in BUILTINS else None
             case ir.Call():
+                if any(isinstance(a.type, Array) and not isinstance(a, ir.Var) for a in e.args):
+                    raise self.fail("an array that is handed over without a name")
                 found = self.signature(e.function)
                 return found[1] if found is not None and found[0] == types else None
             case ir.Convert():

@@ -19,58 +19,20 @@ from codegen.errors import Place, UserError
 from codegen.evaluate import evaluate
 from codegen.intervals import TABLES, permitted
 from codegen.ir import nodes as ir
-from codegen.ir.domains import Interval, Unit
 from codegen.ir.types import F32, I32, U32, VEC3, array_of, half_of, leaves
 from codegen.ir.verify import MalformedIRError, verify
 from codegen.kernels import kernel
 from codegen.library import load_library
 from codegen.passes.specialise import specialise
 from conformance.unit.support.dialects import DIALECTS, ONE_PER_TARGET, dialect_id, validate
+from conformance.unit.support.lights import LIGHTS, inputs, lambert_sum
 from conformance.unit.support.trees import no_function
 
 LIBRARY = load_library()
-LIGHTS = 12
-LANES = 50
-DIRECTIONS, COLOURS = array_of(VEC3, LIGHTS), array_of(VEC3, LIGHTS)
 GLSL = StmtPrinter(dialect("glsl", None))
 
 
-def element(name: str) -> ir.Expr:
-    return ir.Index(VEC3, ir.Var(DIRECTIONS, name), ir.Var(I32, "i"))
-
-
-def lambert_sum() -> ir.Function:
-    """for each light: total + max(n . l[i], 0) light[i]"""
-    cosine = ir.Builtin(F32, "dot", (ir.Var(VEC3, "n"), element("l")))
-    lit = ir.Builtin(F32, "max", (cosine, ir.Const(F32, 0.0)))
-    total = ir.Var(VEC3, "total")
-    added = ir.Binary(VEC3, "+", total, ir.Binary(VEC3, "*", lit, element("light")))
-    parameters = (
-        ir.Parameter("n", VEC3, Unit()),
-        ir.Parameter("l", DIRECTIONS, Unit()),
-        ir.Parameter("light", COLOURS, Interval(0.0, 10.0)),
-    )
-    body = (
-        ir.Let("total", ir.Construct(VEC3, (ir.Const(F32, 0.0),)), True),
-        ir.For("i", 0, LIGHTS, (ir.Assign("total", added),)),
-        ir.Return(total),
-    )
-    place = Place("test", 1)
-    return ir.Function("lambert_sum", "", "base", None, parameters, VEC3, body, ir.Doc("Sum.", {}), place)
-
-
 EXTENDED = LIBRARY.with_functions([lambert_sum()])
-
-
-def inputs() -> dict[str, np.ndarray]:
-    random = np.random.default_rng(3)
-
-    def directions(*shape: int) -> np.ndarray:
-        a = random.normal(size=(*shape, 3))
-        return np.asarray(a / np.linalg.norm(a, axis=-1, keepdims=True), np.float32)
-
-    light = random.uniform(0.0, 10.0, (LANES, LIGHTS, 3)).astype(np.float32)
-    return {"n": directions(LANES), "l": directions(LANES, LIGHTS), "light": light}
 
 
 def test_leaves_are_the_elements_in_order() -> None:
