@@ -2,8 +2,8 @@
 
 Plan. A scene's worth of knowledge (constants, an alias, ranges, facts that the inputs keep) about the whole
 fur shader, specialised by the exact passes; the device's results lie in the intervals that the target's
-table permits the general function. Whole exponents by multiplication stay within their stated error. Arrays are
-loaded, numbered by a loop and by a table, as parameters and as constants, in every form of kernel.
+table permits the general function. Whole exponents by multiplication stay within their stated error. Arrays
+are loaded, numbered by a loop and by a table, as parameters and as constants, in every form of kernel.
 """
 
 from __future__ import annotations
