@@ -1,10 +1,11 @@
 """The frame of a combed surface."""
 
+from shaderlib.constants import TINY_SQUARE
 from shaderlib.direction.doubled_cross import doubled_cross
 from shaderlib.direction.frame import Frame
 from shaderlib.direction.frame_from_normal import frame_from_normal
 from shaderlib.domains import Direction
-from shaderlib.lang import cross
+from shaderlib.lang import cross, dot, inverse_sqrt, max, variant
 from shaderlib.numeric.safe_normalize import safe_normalize_dot
 
 
@@ -20,4 +21,20 @@ def frame_from_tangent(n: Direction, t: Direction) -> Frame:
     source      Gram-Schmidt; form derived for this library
     """
     bitangent = safe_normalize_dot(doubled_cross(n, t), frame_from_normal(n).bitangent)
+    return Frame(cross(bitangent, n), bitangent, n)
+
+
+@variant("frame_from_tangent")
+def frame_from_tangent_apart(n: Direction, t: Direction) -> Frame:
+    """Right-handed frame with the normal n and the tangent t, for tangents that are well off the normal.
+
+    n           normal, kept as it is
+    t           wanted tangent, from 1e-3 rad off the line of n; only its part across n counts
+    returns     frame with tangent = normalize(t - (t.n) n) and bitangent = n x tangent
+    degenerate  t on the line of n: tangent and bitangent are zero or rounded directions
+    form        n x t as it stands, and no frame to fall back to
+    source      Gram-Schmidt
+    """
+    across = cross(n, t)
+    bitangent = inverse_sqrt(max(dot(across, across), TINY_SQUARE)) * across
     return Frame(cross(bitangent, n), bitangent, n)

@@ -1,8 +1,8 @@
 """Growth of a coat's optical depth with the direction of view."""
 
-from shaderlib.direction.sin_angle import sin_angle
+from shaderlib.direction.sin_angle import sin_angle, sin_angle_cross, sin_angle_half
 from shaderlib.domains import Direction
-from shaderlib.lang import dot, f32, max
+from shaderlib.lang import dot, f32, max, variant
 
 # Cosine below which a direction counts as grazing. It keeps quotients finite, and it is small enough that
 # the depth of any visible coat has reached its limit of 1e9 there.
@@ -24,3 +24,33 @@ def fur_obliquity(t: Direction, n: Direction, w: Direction) -> f32:
     source      Goldman 1997, Fake Fur Rendering; Romanick 2010, VGP352 week 6, "Fur Opacity"
     """
     return sin_angle(w, t) / max(dot(w, n), GRAZING)
+
+
+@variant("fur_obliquity")
+def fur_obliquity_half(t: Direction, n: Direction, w: Direction) -> f32:
+    """Ratio of a coat's optical depth along w to the hair area below it, for w off the hairs.
+
+    t           hair direction
+    n           surface normal
+    w           direction to the light or to the viewer
+    returns     g = sin(w, t) / w.n, in [0, 1e12]
+    degenerate  w.n <= 0 counts as 1e-12
+    form        fur_obliquity with sin_angle_half
+    source      Goldman 1997, Fake Fur Rendering; sin_angle_half
+    """
+    return sin_angle_half(w, t) / max(dot(w, n), GRAZING)
+
+
+@variant("fur_obliquity")
+def fur_obliquity_cross(t: Direction, n: Direction, w: Direction) -> f32:
+    """Ratio of a coat's optical depth along w to the hair area below it, for w off the hairs.
+
+    t           hair direction
+    n           surface normal
+    w           direction to the light or to the viewer
+    returns     g = sin(w, t) / w.n, in [0, 1e12]
+    degenerate  w.n <= 0 counts as 1e-12
+    form        fur_obliquity with sin_angle_cross
+    source      Goldman 1997, Fake Fur Rendering; sin_angle_cross
+    """
+    return sin_angle_cross(w, t) / max(dot(w, n), GRAZING)

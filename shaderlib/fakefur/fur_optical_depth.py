@@ -2,11 +2,11 @@
 
 from typing import Annotated
 
-from shaderlib.direction.sin_angle import sin_angle
+from shaderlib.direction.sin_angle import sin_angle, sin_angle_cross, sin_angle_half
 from shaderlib.domains import Cosine, Direction, UnitInterval
 from shaderlib.fakefur.domains import HairArea, HairDensity
 from shaderlib.fakefur.fur_obliquity import GRAZING
-from shaderlib.lang import Interval, dot, f32, helper, max, min
+from shaderlib.lang import Interval, dot, f32, helper, max, min, variant
 
 # Depth of an opaque coat. Far beyond what e^-x can tell apart, because the slab weights still depend on the
 # ratio of two large depths.
@@ -48,3 +48,41 @@ def fur_optical_depth(
     source      Goldman 1997, Fake Fur Rendering; Romanick 2010, VGP352 week 6, "Fur Opacity"
     """
     return fur_slab_depth(density * hair_area, sin_angle(w, t), dot(w, n))
+
+
+@variant("fur_optical_depth")
+def fur_optical_depth_half(
+    density: HairDensity, hair_area: HairArea, t: Direction, n: Direction, w: Direction
+) -> f32:
+    """Optical depth of a coat along a direction off the hairs.
+
+    density     hairs per unit of skin area
+    hair_area   silhouette area of one hair, see fur_hair_area
+    t           hair direction
+    n           surface normal
+    w           direction to the light or to the viewer
+    returns     x = density hair_area sin(w, t) / w.n in [0, 1e9]
+    degenerate  w.n <= 0 counts as 1e-12: opaque; bald skin: 0
+    form        fur_optical_depth with sin_angle_half
+    source      Goldman 1997, Fake Fur Rendering; sin_angle_half
+    """
+    return fur_slab_depth(density * hair_area, sin_angle_half(w, t), dot(w, n))
+
+
+@variant("fur_optical_depth")
+def fur_optical_depth_cross(
+    density: HairDensity, hair_area: HairArea, t: Direction, n: Direction, w: Direction
+) -> f32:
+    """Optical depth of a coat along a direction off the hairs.
+
+    density     hairs per unit of skin area
+    hair_area   silhouette area of one hair, see fur_hair_area
+    t           hair direction
+    n           surface normal
+    w           direction to the light or to the viewer
+    returns     x = density hair_area sin(w, t) / w.n in [0, 1e9]
+    degenerate  w.n <= 0 counts as 1e-12: opaque; bald skin: 0
+    form        fur_optical_depth with sin_angle_cross
+    source      Goldman 1997, Fake Fur Rendering; sin_angle_cross
+    """
+    return fur_slab_depth(density * hair_area, sin_angle_cross(w, t), dot(w, n))

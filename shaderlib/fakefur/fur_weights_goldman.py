@@ -6,7 +6,8 @@ from shaderlib.fakefur.domains import OpticalDepth
 from shaderlib.fakefur.fur_weights import FurWeights
 from shaderlib.lang import exp, min, variant
 from shaderlib.numeric.exprel_series import exprel_series
-from shaderlib.numeric.growth_rational import growth_rational
+from shaderlib.numeric.growth_rational import growth_coarse, growth_rational
+from shaderlib.numeric.one_minus_exp_neg import one_minus_exp_neg_doubling_short
 
 # Either depth is limited to half the range of exp, so that the product of the two transmittances is an
 # ordinary number; e^-40 = 4e-18 is far below the last bit of the weights.
@@ -47,7 +48,7 @@ def fur_weights_goldman_rational(
     depth_view   optical depth of the coat along the view
     depth_light  optical depth of the coat along the light
     overlap      largest share of its light that a hair loses to the hairs above it; 0.5 by default
-    returns      the weights of fur_weights_goldman to about half of half an 8-bit step
+    returns      the weights of fur_weights_goldman to 8e-4, less than half of half an 8-bit step
     form         with w(x) = x growth_rational(x), which imitates e^x - 1: skin = 1 / ((1 + w_view) (1 +
                  w_light)), hair = w_view (1 + (1 - overlap) w_light) skin. The slope of hair at depth_view
                  = 0 is exact, and skin = 1 - hair at depth_light = 0
@@ -55,6 +56,45 @@ def fur_weights_goldman_rational(
     """
     growth_view = depth_view * growth_rational(depth_view)
     growth_light = depth_light * growth_rational(depth_light)
+    skin = 1.0 / ((1.0 + growth_view) * (1.0 + growth_light))
+    hair = growth_view * (1.0 + (1.0 - overlap) * growth_light) * skin
+    return FurWeights(hair, skin)
+
+
+@variant("fur_weights_goldman")
+def fur_weights_goldman_doubling_short(
+    depth_view: OpticalDepth, depth_light: OpticalDepth, overlap: UnitInterval
+) -> FurWeights:
+    """Goldman's weights without an exponential and without a division.
+
+    depth_view   optical depth of the coat along the view
+    depth_light  optical depth of the coat along the light
+    overlap      largest share of its light that a hair loses to the hairs above it; 0.5 by default
+    returns      the weights of fur_weights_goldman to 9e-4, less than half of half an 8-bit step
+    form         opacities by one_minus_exp_neg_doubling_short, combined as Goldman writes it
+    source       Goldman 1997, Fake Fur Rendering; fitted for this library
+    """
+    opacity_view = one_minus_exp_neg_doubling_short(depth_view)
+    opacity_light = one_minus_exp_neg_doubling_short(depth_light)
+    hair = opacity_view * (1.0 - overlap * opacity_light)
+    return FurWeights(hair, (1.0 - opacity_view) * (1.0 - opacity_light))
+
+
+@variant("fur_weights_goldman")
+def fur_weights_goldman_rational_coarse(
+    depth_view: OpticalDepth, depth_light: OpticalDepth, overlap: UnitInterval
+) -> FurWeights:
+    """Goldman's weights by polynomials of low degree and one division: one percent.
+
+    depth_view   optical depth of the coat along the view
+    depth_light  optical depth of the coat along the light
+    overlap      largest share of its light that a hair loses to the hairs above it; 0.5 by default
+    returns      the weights of fur_weights_goldman to 1.5 percent of 1
+    form         fur_weights_goldman_rational with growth_coarse
+    source       fitted for this library
+    """
+    growth_view = depth_view * growth_coarse(depth_view)
+    growth_light = depth_light * growth_coarse(depth_light)
     skin = 1.0 / ((1.0 + growth_view) * (1.0 + growth_light))
     hair = growth_view * (1.0 + (1.0 - overlap) * growth_light) * skin
     return FurWeights(hair, skin)

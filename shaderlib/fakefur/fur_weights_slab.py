@@ -5,7 +5,7 @@ from shaderlib.fakefur.domains import OpticalDepth
 from shaderlib.fakefur.fur_weights import FurWeights
 from shaderlib.lang import exp, max, min, variant
 from shaderlib.numeric.exprel_series import exprel_series
-from shaderlib.numeric.growth_rational import growth_rational
+from shaderlib.numeric.growth_rational import growth_coarse, growth_rational
 
 
 def fur_weights_slab(depth_view: OpticalDepth, depth_light: OpticalDepth) -> FurWeights:
@@ -37,13 +37,28 @@ def fur_weights_slab_rational(depth_view: OpticalDepth, depth_light: OpticalDept
 
     depth_view   optical depth of the coat along the view
     depth_light  optical depth of the coat along the light
-    returns      the weights of fur_weights_slab to a third of half an 8-bit step; hair to 0.32 percent
-                 relative
+    returns      the weights of fur_weights_slab to a fifth of half an 8-bit step; hair to 3.9e-4 relative
     form         with h = growth_rational(x) and x the sum of the depths: skin = 1 / (1 + x h) and hair =
                  depth_view h skin. hair + skin = 1 for depth_light = 0 by construction
     source       fitted for this library
     """
     depth = depth_view + depth_light
     growth = growth_rational(depth)
+    skin = 1.0 / (1.0 + depth * growth)
+    return FurWeights(depth_view * growth * skin, skin)
+
+
+@variant("fur_weights_slab")
+def fur_weights_slab_rational_coarse(depth_view: OpticalDepth, depth_light: OpticalDepth) -> FurWeights:
+    """Weights of the uniform coat by a polynomial of low degree and one division: one percent.
+
+    depth_view   optical depth of the coat along the view
+    depth_light  optical depth of the coat along the light
+    returns      the weights of fur_weights_slab to 1.1 percent of 1; hair to 1.1 percent relative
+    form         fur_weights_slab_rational with growth_coarse
+    source       fitted for this library
+    """
+    depth = depth_view + depth_light
+    growth = growth_coarse(depth)
     skin = 1.0 / (1.0 + depth * growth)
     return FurWeights(depth_view * growth * skin, skin)

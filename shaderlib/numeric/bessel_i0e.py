@@ -28,6 +28,13 @@ SHORT_Q_2 = 2.69406748
 SHORT_Q_3 = 1.04339828
 SHORT_Q_4 = 1.1907202
 
+COARSE_P_0 = 0.998965144  # 3f7fbc2e
+COARSE_P_1 = 0.366092682  # 3ebb7080
+COARSE_P_2 = 0.497826904  # 3efee32b
+COARSE_Q_1 = 2.44991899  # 401ccb79
+COARSE_Q_2 = 2.05528831  # 400389d8
+COARSE_Q_3 = 3.11464405  # 40475654
+
 # The fit holds to 2^17; x^7 is still far from overflow there.
 LARGEST_ARGUMENT = 131072.0
 
@@ -60,4 +67,19 @@ def bessel_i0e_short(x: Annotated[f32, Interval(-1.0e5, 1.0e5)]) -> f32:
     m = min(abs(x), LARGEST_ARGUMENT)
     numerator = SHORT_P_0 + m * (SHORT_P_1 + m * (SHORT_P_2 + m * SHORT_P_3))
     denominator = 1.0 + m * (SHORT_Q_1 + m * (SHORT_Q_2 + m * (SHORT_Q_3 + m * SHORT_Q_4)))
+    return sqrt(numerator / denominator)
+
+
+@variant("bessel_i0e")
+def bessel_i0e_coarse(x: Annotated[f32, Interval(-1.0e5, 1.0e5)]) -> f32:
+    """Scaled modified Bessel function e^-|x| I0(x) to 2.2e-3.
+
+    x        any sign; held at |x| = 131072 beyond
+    returns  e^-|x| I0(x), in (0, 1]
+    form     root of a rational function of degree 2 over 3
+    source   definition: Abramowitz and Stegun 1964, 9.6.16; rational function fitted for this library
+    """
+    m = min(abs(x), LARGEST_ARGUMENT)
+    numerator = COARSE_P_0 + m * (COARSE_P_1 + m * COARSE_P_2)
+    denominator = 1.0 + m * (COARSE_Q_1 + m * (COARSE_Q_2 + m * COARSE_Q_3))
     return sqrt(numerator / denominator)

@@ -6,6 +6,9 @@ from shaderlib.constants import SMALLEST_NORMAL
 from shaderlib.lang import Interval, f32, log, max, min, variant
 from shaderlib.numeric.atanh_series import atanh_series
 
+# Minimax in the relative error of z (1 + THIN_2 z^2) against atanh z for z <= 1/3: 4.7e-4.
+THIN_2 = 0.35312897  # 3eb4cd52
+
 
 def log_one_minus(q: Annotated[f32, Interval(0.0, 0.99999994, scale="log")]) -> f32:
     """Natural logarithm of 1 - q, accurate as q -> 0.
@@ -33,3 +36,17 @@ def log_one_minus_direct(q: Annotated[f32, Interval(0.0, 0.99999994)]) -> f32:
     source   elementary
     """
     return log(max(1.0 - q, SMALLEST_NORMAL))
+
+
+@variant("log_one_minus")
+def log_one_minus_thin(q: Annotated[f32, Interval(0.0, 0.5, scale="log")]) -> f32:
+    """Natural logarithm of 1 - q for q up to 1/2 by two terms: no logarithm, 0.05 percent.
+
+    q        in [0, 0.5]
+    returns  log(1 - q) to 4.7e-4 relative
+    form     -2 atanh(z) with z = q / (2 - q) <= 1/3, in which the series is odd: its second term, fitted,
+             stands for all others
+    source   log(1 - q) = -2 atanh(q / (2 - q)); fitted for this library
+    """
+    z = q / (2.0 - q)
+    return -2.0 * z * (1.0 + THIN_2 * (z * z))

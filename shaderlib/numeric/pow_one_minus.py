@@ -9,6 +9,18 @@ from shaderlib.numeric.log_one_minus import log_one_minus
 FROM4_A = 0.325517029  # 3ea6aa2b
 FROM4_B = 0.291213661  # 3e9519f5
 
+# Minimax in the absolute error of exp(-p q (1 + a q + b q^2)), over all p >= 8 at once: 2.7e-4.
+FROM8_A = 0.477103025  # 3ef446d9
+FROM8_B = 0.524670482  # 3f0650ce
+
+# The same with e^-y = (1 + c1 y + c2 y^2 + c3 y^3)^8 for y up to 9, held beyond: 1.7e-4.
+CUBIC8_A = 0.477653623  # 3ef48f04
+CUBIC8_B = 0.510274231  # 3f02a155
+CUBIC8_1 = -0.125050768  # be000d4f
+CUBIC8_2 = 0.0077821766  # 3bff01a1
+CUBIC8_3 = -0.000284559064  # b99530df
+CUBIC8_LIMIT = 9.0
+
 # q / (2 - q) must not divide by zero at q = 2; everything is 0 to the last digit from 1 on.
 LARGEST_DEFECT = 1.9
 
@@ -81,3 +93,35 @@ def pow_one_minus_sq16(q: CosineDefect, p: ExponentFrom8) -> f32:
     r4 = r2 * r2
     r8 = r4 * r4
     return r8 * r8
+
+
+@variant("pow_one_minus")
+def pow_one_minus_from8(q: CosineDefect, p: ExponentFrom8) -> f32:
+    """Power (1 - q)^p for exponents from 8 on, by one exponential and without a division.
+
+    q        defect 1 - x of the base x, in [0, 2]
+    p        exponent, in [8, 1e5]
+    returns  max(0, 1 - q)^p to 2.7e-4, a seventh of half an 8-bit step; at most 1e-7 for q >= 1
+    form     exp(-p q (1 + a q + b q^2)): where a high power is not yet 0, q is small, so two terms fitted
+             under the lobe replace the series of the logarithm
+    source   fitted for this library over all p >= 8
+    """
+    return exp(-min(p * q * (1.0 + q * (FROM8_A + q * FROM8_B)), EXP_LIMIT))
+
+
+@variant("pow_one_minus")
+def pow_one_minus_cubic8(q: CosineDefect, p: ExponentFrom8) -> f32:
+    """Power (1 - q)^p by three squarings of a cubic: no transcendental function, no division.
+
+    q        defect 1 - x of the base x, in [0, 2]
+    p        exponent, in [8, 1e5]
+    returns  max(0, 1 - q)^p to 1.8e-4, an eleventh of half an 8-bit step, also for q >= 1
+    form     with y = p q (1 + a q + b q^2), which imitates -p log(1 - q) under the lobe, e^-y as the eighth
+             power of a cubic
+    source   fitted for this library over all p >= 8
+    """
+    y = min(p * q * (1.0 + q * (CUBIC8_A + q * CUBIC8_B)), CUBIC8_LIMIT)
+    r = 1.0 + y * (CUBIC8_1 + y * (CUBIC8_2 + y * CUBIC8_3))
+    r2 = r * r
+    r4 = r2 * r2
+    return r4 * r4

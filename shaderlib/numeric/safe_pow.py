@@ -52,3 +52,20 @@ def safe_pow_exp2(
     positive = exp2(clamp(y * log2(max(x, SMALLEST_NORMAL)), -EXP2_LIMIT, EXP2_LIMIT))
     bounded = positive if x > 0.0 else 0.0
     return 1.0 if y == 0.0 else bounded
+
+
+@variant("safe_pow")
+def safe_pow_near_one(
+    x: Annotated[f32, Interval(0.5, 2.0)], y: Annotated[f32, Interval(-28.0, 1.0e5, scale="log")]
+) -> f32:
+    """Power x^y for bases from 1/2 to 2: as accurate as safe_pow, without a logarithm.
+
+    x           base, in [0.5, 2]
+    y           exponent
+    returns     x^y between e^-80 = 1.8e-35 and e^80 = 5.5e34, where it saturates
+    degenerate  y = 0: 1
+    form        the part of safe_pow around 1: exp(y 2 atanh((x - 1) / (x + 1)))
+    source      elementary; series: atanh_series
+    """
+    z = (x - 1.0) / (x + 1.0)
+    return exp(clamp(2.0 * y * z * atanh_series(z * z), -EXP_LIMIT, EXP_LIMIT))

@@ -2,9 +2,9 @@
 
 from typing import Annotated
 
-from shaderlib.domains import Colour, Direction, Exponent
+from shaderlib.domains import Colour, Direction, Exponent, ExponentFrom8, ExponentFrom16
 from shaderlib.lang import Interval, clamp, dot, f32, printed, variant, vec3
-from shaderlib.numeric.pow_one_minus import pow_one_minus
+from shaderlib.numeric.pow_one_minus import pow_one_minus, pow_one_minus_cubic8, pow_one_minus_from4
 from shaderlib.numeric.safe_pow import safe_pow
 from shaderlib.shells.shell_sine_power import shell_sine_power
 
@@ -66,6 +66,66 @@ def shell_shade_cosine(
     cos_h = dot(n, h)
     diffuse = pow_one_minus(cos_l * cos_l, 0.5 * p_diffuse)
     specular = pow_one_minus(cos_h * cos_h, 0.5 * p_specular)
+    return k_diffuse * diffuse + k_specular * specular
+
+
+@variant("shell_shade")
+def shell_shade_from4(
+    n: Direction,
+    l: Direction,
+    h: Direction,
+    k_diffuse: Colour,
+    p_diffuse: ExponentFrom8,
+    k_specular: Colour,
+    p_specular: ExponentFrom8,
+) -> vec3:
+    """Reflectance of a shell from two cosines, for exponents of 8 and more, without logarithms.
+
+    n           surface normal, which is the hair direction
+    l           direction to the light
+    h           half vector of light and viewer
+    k_diffuse   diffuse colour
+    p_diffuse   diffuse exponent, at least 8
+    k_specular  colour of the highlight
+    p_specular  exponent of the highlight, at least 8
+    returns     k_diffuse sin(n, l)^p_diffuse + k_specular sin(n, h)^p_specular
+    form        shell_shade_cosine with pow_one_minus_from4
+    source      Romanick 2010, VGP352 week 6; pow_one_minus_from4
+    """
+    cos_l = dot(n, l)
+    cos_h = dot(n, h)
+    diffuse = pow_one_minus_from4(cos_l * cos_l, 0.5 * p_diffuse)
+    specular = pow_one_minus_from4(cos_h * cos_h, 0.5 * p_specular)
+    return k_diffuse * diffuse + k_specular * specular
+
+
+@variant("shell_shade")
+def shell_shade_cubic8(
+    n: Direction,
+    l: Direction,
+    h: Direction,
+    k_diffuse: Colour,
+    p_diffuse: ExponentFrom16,
+    k_specular: Colour,
+    p_specular: ExponentFrom16,
+) -> vec3:
+    """Reflectance of a shell from two cosines, for exponents of 16 and more, by polynomials.
+
+    n           surface normal, which is the hair direction
+    l           direction to the light
+    h           half vector of light and viewer
+    k_diffuse   diffuse colour
+    p_diffuse   diffuse exponent, at least 16
+    k_specular  colour of the highlight
+    p_specular  exponent of the highlight, at least 16
+    returns     k_diffuse sin(n, l)^p_diffuse + k_specular sin(n, h)^p_specular
+    form        shell_shade_cosine with pow_one_minus_cubic8
+    source      Romanick 2010, VGP352 week 6; pow_one_minus_cubic8
+    """
+    cos_l = dot(n, l)
+    cos_h = dot(n, h)
+    diffuse = pow_one_minus_cubic8(cos_l * cos_l, 0.5 * p_diffuse)
+    specular = pow_one_minus_cubic8(cos_h * cos_h, 0.5 * p_specular)
     return k_diffuse * diffuse + k_specular * specular
 
 

@@ -1,9 +1,9 @@
 """Length of the way of light through a coat, under two readings of its geometry."""
 
 from shaderlib.constants import COAT_LIMIT
-from shaderlib.direction.sin_angle import sin_angle
+from shaderlib.direction.sin_angle import sin_angle, sin_angle_cross, sin_angle_half
 from shaderlib.domains import Depth, Direction
-from shaderlib.lang import dot, f32, max, min
+from shaderlib.lang import dot, f32, max, min, variant
 
 # A depth of at most 1e6 divided by this is still finite; any depth that matters, from 1e-12 on, already
 # saturates at COAT_LIMIT.
@@ -37,3 +37,33 @@ def coat_path_slab(depth: Depth, n: Direction, l: Direction) -> f32:
     source      path through a parallel slab
     """
     return min(depth / max(dot(n, l), GRAZING), COAT_LIMIT)
+
+
+@variant("coat_path_banks")
+def coat_path_banks_half(depth: Depth, t: Direction, l: Direction) -> f32:
+    """Way of light through a coat of strands that lie along the surface, for light off the strand's axis.
+
+    depth       distance below the OUTER boundary of the coat, at least 0, in scene units
+    t           strand tangent, root to tip
+    l           direction to the light
+    returns     depth / sin(t, l), at most 1e18, in scene units
+    degenerate  depth 0: 0; light along the strand: from depth 1e7 up to 1e18, as rounding has it
+    form        coat_path_banks with sin_angle_half
+    source      Banks 1994, vector field shadowing; sin_angle_half
+    """
+    return min(depth / max(sin_angle_half(t, l), GRAZING), COAT_LIMIT)
+
+
+@variant("coat_path_banks")
+def coat_path_banks_cross(depth: Depth, t: Direction, l: Direction) -> f32:
+    """Way of light through a coat of strands that lie along the surface, for light off the strand's axis.
+
+    depth       distance below the OUTER boundary of the coat, at least 0, in scene units
+    t           strand tangent, root to tip
+    l           direction to the light
+    returns     depth / sin(t, l), at most 1e18, in scene units
+    degenerate  depth 0: 0; light along the strand: from depth 1e7 up to 1e18, as rounding has it
+    form        coat_path_banks with sin_angle_cross
+    source      Banks 1994, vector field shadowing; sin_angle_cross
+    """
+    return min(depth / max(sin_angle_cross(t, l), GRAZING), COAT_LIMIT)

@@ -49,3 +49,21 @@ def strand_azimuth_cosine_cross(t: Direction, l: Direction, v: Direction) -> f32
     squares = (SINE_SCALE * dot(a, a)) * (SINE_SCALE * dot(b, b))
     kappa = (SINE_SCALE * dot(a, b)) * inverse_sqrt(max(squares, TINY_SQUARE))
     return clamp(kappa, -1.0, 1.0)
+
+
+@variant("strand_azimuth_cosine")
+def strand_azimuth_cosine_dots(t: Direction, l: Direction, v: Direction) -> f32:
+    """Cosine of the angle between light and viewer around a strand, from three inner products.
+
+    t           strand tangent, root to tip
+    l           direction to the light
+    v           direction to the viewer
+    returns     in [-1, 1]: 1 front-lit, -1 back-lit; meaningless within 1e-3 rad of the strand's axis
+    degenerate  l or v along t: what rounding leaves, in [-1, 1]
+    form        (l.v - cos_l cos_v) / (sin_l sin_v) by one inverse root: everything cancels near the axis
+    source      Goldman 1997, relative directionality
+    """
+    cos_l = dot(t, l)
+    cos_v = dot(t, v)
+    squares = (1.0 - cos_l * cos_l) * (1.0 - cos_v * cos_v)
+    return clamp((dot(l, v) - cos_l * cos_v) * inverse_sqrt(max(squares, TINY_SQUARE)), -1.0, 1.0)

@@ -3,7 +3,7 @@
 from shaderlib.direction.sin_angle import sin_angle
 from shaderlib.domains import Direction
 from shaderlib.lang import dot, f32, max, printed, sqrt, variant
-from shaderlib.strand.strand_defect import strand_defect
+from shaderlib.strand.strand_defect import strand_defect, strand_defect_half
 
 
 def strand_cosine(t: Direction, l: Direction, v: Direction) -> f32:
@@ -35,6 +35,20 @@ def strand_cosine_direct(t: Direction, l: Direction, v: Direction) -> f32:
     cos_v = dot(t, v)
     sines = sqrt(max((1.0 - cos_l * cos_l) * (1.0 - cos_v * cos_v), 0.0))
     return sines - cos_l * cos_v
+
+
+@variant("strand_cosine")
+def strand_cosine_half(t: Direction, l: Direction, v: Direction) -> f32:
+    """Strand cosine by half angles, from four squared lengths.
+
+    t        strand tangent, root to tip
+    l        direction to the light
+    v        direction to the viewer
+    returns  sin_l sin_v - cos_l cos_v, in [-1, 1] up to rounding; 1 on the cone t.v = -t.l
+    form     1 - strand_defect_half: as good as strand_cosine at every angle, for two thirds of the work
+    source   double-angle formula; derived for this library
+    """
+    return 1.0 - strand_defect_half(t, l, v)
 
 
 @printed("strand_cosine")

@@ -4,7 +4,9 @@ from shaderlib.domains import Direction, Exponent, ExponentFrom4, ExponentFrom8
 from shaderlib.lang import f32, variant
 from shaderlib.numeric.pow_one_minus import (
     pow_one_minus,
+    pow_one_minus_cubic8,
     pow_one_minus_from4,
+    pow_one_minus_from8,
     pow_one_minus_gauss,
     pow_one_minus_sq16,
 )
@@ -39,7 +41,7 @@ def strand_specular_from4(t: Direction, l: Direction, v: Direction, exponent: Ex
     v         direction to the viewer
     exponent  sharpness of the highlight, in [4, 1e5]
     returns   1 on the cone t.v = -t.l, falling to 0; at most 2.5e-6 on the dark side
-    form      pow_one_minus_from4 of the defect, sines by half angles
+    form      pow_one_minus_from4 of the defect by half angles
     source    strand_specular; pow_one_minus_from4
     """
     return pow_one_minus_from4(strand_defect_half(t, l, v), exponent)
@@ -54,7 +56,7 @@ def strand_specular_gauss(t: Direction, l: Direction, v: Direction, exponent: Ex
     v         direction to the viewer
     exponent  sharpness of the highlight, in [8, 1e5]
     returns   1 on the cone t.v = -t.l, falling to 0; at most 2e-7 on the dark side
-    form      pow_one_minus_gauss of the defect, sines by half angles: 0.112 / exponent^2
+    form      pow_one_minus_gauss of the defect by half angles: 0.112 / exponent^2
     source    strand_specular; pow_one_minus_gauss
     """
     return pow_one_minus_gauss(strand_defect_half(t, l, v), exponent)
@@ -69,11 +71,41 @@ def strand_specular_sq16(t: Direction, l: Direction, v: Direction, exponent: Exp
     v         direction to the viewer
     exponent  sharpness of the highlight, in [8, 1e5]; best from 16 on
     returns   1 on the cone t.v = -t.l, falling to 0
-    form      pow_one_minus_sq16 of the defect, sines by half angles: cheaper than the obvious form, and
+    form      pow_one_minus_sq16 of the defect by half angles: cheaper than the obvious form, and
               nowhere worse than a quarter of half an 8-bit step from exponent 16 on
     source    strand_specular; pow_one_minus_sq16
     """
     return pow_one_minus_sq16(strand_defect_half(t, l, v), exponent)
+
+
+@variant("strand_specular")
+def strand_specular_from8(t: Direction, l: Direction, v: Direction, exponent: ExponentFrom8) -> f32:
+    """Specular lobe of a strand for exponents from 8 on, by one exponential and without a division.
+
+    t         strand tangent, root to tip
+    l         direction to the light
+    v         direction to the viewer
+    exponent  sharpness of the highlight, in [8, 1e5]
+    returns   1 on the cone t.v = -t.l, falling to 0; at most 2e-7 on the dark side
+    form      pow_one_minus_from8 of the defect by half angles
+    source    strand_specular; pow_one_minus_from8
+    """
+    return pow_one_minus_from8(strand_defect_half(t, l, v), exponent)
+
+
+@variant("strand_specular")
+def strand_specular_cubic8(t: Direction, l: Direction, v: Direction, exponent: ExponentFrom8) -> f32:
+    """Specular lobe of a strand for exponents from 8 on, without transcendental function or division.
+
+    t         strand tangent, root to tip
+    l         direction to the light
+    v         direction to the viewer
+    exponent  sharpness of the highlight, in [8, 1e5]
+    returns   1 on the cone t.v = -t.l, falling to 0
+    form      pow_one_minus_cubic8 of the defect by half angles: an eleventh of half an 8-bit step
+    source    strand_specular; pow_one_minus_cubic8
+    """
+    return pow_one_minus_cubic8(strand_defect_half(t, l, v), exponent)
 
 
 @variant("strand_specular")
