@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -39,9 +38,6 @@ from conformance.bench.inputs import declared, groups, lanes, within
 from conformance.bench.kernels import FLAT, LATENCY, THROUGHPUT, Mode
 from conformance.bench.ratios import net_ratio, spread, straightness
 from conformance.bench.record import (
-    complete,
-    described_device,
-    function_data,
     method_data,
     rounded,
     slug,
@@ -54,6 +50,7 @@ from conformance.bench.vectorised import by_construction, from_remarks
 from conformance.bench.whole import whole
 from conformance.bench.worker import Job
 from conformance.check.engine import backend
+from conformance.unit.support.results import small_result
 from targets import Device, TimedRuntime
 
 SHAPES = ("safe_pow", "sin_angle", "fakefur_shade", "pcg_hash")
@@ -185,43 +182,14 @@ def test_inputs_suit_all_members(library: Library) -> None:
         assert evaluate(library, group.base.name, drawn) is not None
 
 
-def small_result(library: Library) -> dict[str, Any]:
-    device = Device("glsl", "OpenGL 4.5", "Mesa", "llvmpipe (LLVM 15)")
-    times = {
-        "net_ns": 1.0,
-        "net_ns_quartiles": [0.9, 1.1],
-        "gross_ns": 2.0,
-        "ratio": 0.5,
-        "ratio_quartiles": [0.4, 0.6],
-    }
-    error = {"measure": "relative", "max": 2.8e-7, "p999": 1e-7, "median": 1e-8, "not_finite": 0, "inputs": 9}
-    functions = [
-        {
-            **function_data(library, f, "sin_angle"),
-            "speed": {"throughput": times},
-            "error": {**error, "domain": "all"},
-        }
-        for f in groups(library, ["sin_angle"])[0].members
-    ]
-    figure = Figure("sin_angle", "1e-7 rad", "glsl", 5e-7, 2.8e-7, "relative").as_data()
-    result = {
-        "device": described_device(device),
-        "method": {"clock": "CPU time"},
-        "self_checks": {"function": "sin_angle"},
-        "functions": functions,
-        "figures": [figure],
-    }
-    return complete(result, {"before": [0.0], "after": [0.0]})
-
-
 def test_recorded_results_reach_the_readme_and_the_list(library: Library, tmp_path: Path) -> None:
     result = small_result(library)
     assert slug(result["device"]) == "glsl-llvmpipe"
     assert speed(library, tmp_path / "nothing") == ""
     (tmp_path / "glsl-llvmpipe.json").write_text(json.dumps(result), encoding="utf-8")
     table = speed(library, tmp_path)
-    assert "| `sin_angle` | relative | 1 ns | 2.8e-07 |" in table
-    assert "| `sin_angle_cosine` | relative | x 0.50 | 2.8e-07 |" in table
+    assert "| `sin_angle` | relative | 1 ns | 1e-07 |" in table
+    assert "| `sin_angle_half` | relative | x 0.50 | 1e-06 |" in table
     assert recorded(tmp_path)[0]["schema"] == SCHEMA
     (entry,) = costs(library, library.function("sin_angle"), tmp_path)
     assert entry["driver"] == "llvmpipe"
