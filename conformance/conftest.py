@@ -23,6 +23,11 @@ def target(request: pytest.FixtureRequest) -> str:
     return name
 
 
+def available_targets() -> list[str]:
+    """Names of the targets whose driver is here."""
+    return [name for name in TARGETS if not isinstance(probe(name), TargetUnavailable)]
+
+
 @pytest.fixture(scope="session")
 def runtime(target: str) -> TimedRuntime:
     """The runtime of the target."""

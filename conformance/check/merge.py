@@ -44,7 +44,7 @@ def merge(paths: Iterable[Path]) -> Merged:
         for entry in data["results"]:
             try:
                 result = FunctionResult.from_data(entry)
-            except (KeyError, TypeError) as e:
+            except (AttributeError, KeyError, TypeError, ValueError) as e:
                 raise UserError(f"{path}: a result lacks or misspells {e}") from None
             key = (result.function, result.backend, result.driver)
             if key not in found or found[key].accepted:

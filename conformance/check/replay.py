@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from codegen.errors import UserError
+from codegen.ir.nodes import Function
 from codegen.library import Library
 from conformance.cases import found
-from conformance.check.engine import Draw, draw, only_lane
+from conformance.check.draws import Draw, draw, length, only_lane
 from conformance.check.identity import Identity
 
 RECORDED = "recorded"
@@ -27,14 +28,16 @@ class Case:
     """One input of one function on one target (or driver with its mode).
 
     draw      gives the input
-    identity  draws it on a driver
+    identity  names it, and draws it on a driver
+    words     the input itself, where a record brings it
     remarks   what to say before it is run
     """
 
     function: str
     target: str
     draw: Callable[[], Draw]
-    identity: Identity | None = None
+    identity: Identity
+    words: str = ""
     remarks: tuple[str, ...] = ()
 
 
@@ -46,13 +49,23 @@ def cases_of(library: Library, text: str) -> list[Case]:
     identity = Identity.parse(text)
     function = library.function(identity.function)
 
-    def again() -> Draw:
-        whole = draw(function, identity.family, identity.count, identity.seed)
-        if identity.lane >= whole.count:
-            raise UserError(f'replay identity "{text}" names lane {identity.lane} of {whole.count}')
-        return only_lane(whole, identity.lane)
+    return [Case(identity.function, identity.target, lambda: lane_of(function, identity), identity)]
 
-    return [Case(identity.function, identity.target, again, identity)]
+
+def lane_of(function: Function, identity: Identity, words: str = "") -> Draw:
+    """The one input that an identity names, or that the words of a record hold.
+
+    raises  UserError where the family has no such lane any more
+    """
+    if words:
+        return Draw(RECORDED, 1, identity.seed, found.inputs_of(function, [words]))
+    whole = draw(function, identity.family, identity.count, identity.seed)
+    if identity.lane >= length(whole.inputs):
+        raise UserError(
+            f'replay identity "{identity}" names lane {identity.lane} of {length(whole.inputs)}; '
+            "a file of --json holds the inputs themselves"
+        )
+    return only_lane(whole, identity.lane)
 
 
 def records(path: Path) -> list[Mapping[str, Any]]:
@@ -73,13 +86,14 @@ def from_record(library: Library, path: Path, record: Mapping[str, Any]) -> Case
     """A record as a case; raises UserError where it does not fit the function any more."""
     try:
         function = library.function(record["function"])
-        inputs = found.inputs_of(function, [record["words"]])
-        recorded = Draw(RECORDED, 1, int(record["seed"]), inputs)
-        target = str(record.get("backend") or record["target"])
         identity = Identity.parse(record["identity"])
+        recorded = lane_of(function, identity, record["words"])
+        target = str(record.get("backend") or record["target"])
     except (KeyError, ValueError) as e:
         raise UserError(f"{path}: a record does not fit: {e}") from None
-    remarks = [f"recorded  {record.get('got', '')} on {record.get('driver', '')}"]
+    remarks = [
+        f"recorded   {record.get('got', '')} on {record.get('driver', '')}: {record.get('reason', '')}"
+    ]
     if record.get("source") != library.select([function.name]).source_hash:
-        remarks.append("          the sources have changed since")
-    return Case(function.name, target, lambda: recorded, identity, tuple(remarks))
+        remarks.append("           the sources have changed since")
+    return Case(function.name, target, lambda: recorded, identity, record["words"], tuple(remarks))

@@ -1,44 +1,18 @@
-"""What a check finds: the measured error per bound, and failures with all that replaying them needs."""
+"""What a check finds of one function on one backend: both verdicts, the accuracy beside them, failures."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from conformance.check.accuracy import Accuracy
+from conformance.check.failure import FINITE, PERMITTED, WITHIN, Failure, Missed
 from conformance.check.identity import Identity
+from conformance.check.interval import OUTSIDE, IntervalResult
 
-
-@dataclass(frozen=True)
-class Failure:
-    """One lane that missed a bound, or gave a non-finite result.
-
-    inputs  for people, decimal and hex; words: the same for machines, see conformance.cases.found
-    """
-
-    identity: Identity
-    driver: str
-    reason: str
-    inputs: str
-    got: str
-    expected: str
-    error: str
-    bound: str
-    origin: str
-    words: str = ""
-
-    def lines(self) -> list[str]:
-        """The failure as lines of text; the last one replays it."""
-        return [
-            f"{self.identity.function} on {self.driver}: {self.reason}",
-            f"  inputs    {self.inputs}",
-            f"  got       {self.got}",
-            f"  expected  {self.expected}",
-            f"  error     {self.error}",
-            f"  bound     {self.bound}",
-            f"  origin    {self.origin}",
-            f"  replay    vair check --replay {self.identity}",
-        ]
+NOT_JUDGED = "not judged"
 
 
 @dataclass
@@ -59,11 +33,15 @@ class BoundResult:
 class FunctionResult:
     """One function on one backend.
 
-    backend  as a replay identity carries it: the target, or a driver with its mode
-    stage    how far it came: emit, compile, execute (where it stopped), or judged
-    known    the reason of a failure that was expected, see conformance.drivers.known
-    source   hash of the library's sources that the function needs
-    emitted  hash of the program that a target was given; empty for the evaluator and for drivers with a mode
+    backend   as a replay identity carries it: the target, or a driver with its mode
+    stage     how far it came: emit, compile, execute (where it stopped), or judged
+    known     verdict -> the reason of a failure that was expected, see conformance.drivers.known
+    bounds    the verdict "within bound", bound by bound
+    permitted the verdict "permitted"; None where no interval judged
+    accuracy  how far results are from the reference, whatever the verdicts say
+    source    hash of the library's sources that the function needs
+    emitted   hash of the program that the backend was given; empty for the evaluator
+    program   that program, kept where something failed
     """
 
     function: str
@@ -71,36 +49,68 @@ class FunctionResult:
     driver: str
     backend: str = ""
     stage: str = "judged"
-    known: str = ""
+    known: dict[str, str] = field(default_factory=dict)
     lanes: int = 0
     non_finite: int = 0
     ambiguous: int = 0
     uncovered: int = 0
     seconds: float = 0.0
     bounds: list[BoundResult] = field(default_factory=list)
+    permitted: IntervalResult | None = None
+    accuracy: list[Accuracy] = field(default_factory=list)
     failures: list[Failure] = field(default_factory=list)
     broken: str = ""
     source: str = ""
     emitted: str = ""
+    program: str = ""
+
+    @property
+    def within(self) -> bool:
+        """The verdict "within bound": it ran, and no declared bound was missed."""
+        return not self.broken and not any(b.failures for b in self.bounds)
+
+    @property
+    def interval_verdict(self) -> str:
+        """The verdict "permitted": permitted, outside, unguaranteed, or not judged."""
+        return self.permitted.verdict if self.permitted is not None else NOT_JUDGED
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Names of the verdicts that are bad; what did not run is within no bound."""
+        bad = {
+            FINITE: self.non_finite > 0,
+            PERMITTED: self.interval_verdict == OUTSIDE,
+            WITHIN: not self.within,
+        }
+        return tuple(name for name, is_bad in bad.items() if is_bad)
 
     @property
     def passed(self) -> bool:
-        return not self.failures and not self.broken
+        return not self.failed
 
     @property
     def accepted(self) -> bool:
         """Passed, or failed as expected."""
-        return self.passed or bool(self.known)
+        return all(name in self.known for name in self.failed)
 
     def as_data(self) -> dict[str, Any]:
-        """Plain data for the JSON result."""
-        return {
+        """Plain data for the JSON result, see result.schema.json."""
+        judged = None
+        if self.permitted is not None:
+            judged = {**asdict(self.permitted), "verdict": self.permitted.verdict}
+        data = {
             "function": self.function,
             "target": self.target,
             "driver": self.driver,
             "backend": self.backend,
+            "stage": self.stage,
             "passed": self.passed,
-            "known_failure": self.known or None,
+            "verdicts": {
+                FINITE: self.non_finite == 0,
+                PERMITTED: self.interval_verdict,
+                WITHIN: self.within,
+            },
+            "known_failures": self.known,
             "broken": self.broken or None,
             "lanes": self.lanes,
             "non_finite": self.non_finite,
@@ -108,45 +118,83 @@ class FunctionResult:
             "outside_every_bound": self.uncovered,
             "seconds": round(self.seconds, 3),
             "bounds": [vars(b) for b in self.bounds],
+            "permitted": judged,
+            "accuracy": [vars(a) for a in self.accuracy],
             "source": self.source,
             "emitted": self.emitted,
-            "failures": [self._record(f) for f in self.failures],
+            "failures": [self.record(f) for f in self.failures],
         }
+        plain: dict[str, Any] = as_json(data)
+        return plain
 
-    def _record(self, failure: Failure) -> dict[str, Any]:
+    def record(self, failure: Failure) -> dict[str, Any]:
         """A failure with all that running it elsewhere needs."""
-        return {
-            **vars(failure),
-            "identity": str(failure.identity),
-            "function": self.function,
-            "target": self.target,
-            "backend": self.backend,
-            "seed": failure.identity.seed,
-            "source": self.source,
-            "emitted": self.emitted,
-        }
+        record: dict[str, Any] = as_json(
+            {
+                **asdict(failure),
+                "reason": failure.reason,
+                "identity": str(failure.identity),
+                "function": self.function,
+                "target": self.target,
+                "backend": self.backend,
+                "seed": failure.identity.seed,
+                "source": self.source,
+                "emitted": self.emitted,
+                "program": self.program,
+            }
+        )
+        return record
 
     @staticmethod
     def from_data(data: Mapping[str, Any]) -> FunctionResult:
-        """The result that `as_data` gave; raises KeyError or TypeError for anything else."""
-        failures = []
-        for record in data["failures"]:
-            own = {f.name: record[f.name] for f in fields(Failure)}
-            failures.append(Failure(**{**own, "identity": Identity.parse(record["identity"])}))
+        """The result that `as_data` gave; raises KeyError, TypeError or ValueError for anything else."""
+        failures = [_failure(record) for record in data["failures"]]
+        judged = data["permitted"]
+        if judged is not None:
+            own = {key: value for key, value in judged.items() if key != "verdict"}
+            judged = IntervalResult(**{**own, "excess": float(own["excess"])})
         return FunctionResult(
             function=data["function"],
             target=data["target"],
             driver=data["driver"],
             backend=data["backend"],
-            known=data["known_failure"] or "",
+            stage=data["stage"],
+            known=dict(data["known_failures"]),
             lanes=data["lanes"],
             non_finite=data["non_finite"],
             ambiguous=data["ambiguous"],
             uncovered=data["outside_every_bound"],
             seconds=data["seconds"],
-            bounds=[BoundResult(**b) for b in data["bounds"]],
+            bounds=[_with_floats(BoundResult, b, "measured", "p999", "median") for b in data["bounds"]],
+            permitted=judged,
+            accuracy=[_with_floats(Accuracy, a, "maximum", "p999", "median") for a in data["accuracy"]],
             failures=failures,
             broken=data["broken"] or "",
             source=data["source"],
             emitted=data["emitted"],
+            program=data["failures"][0]["program"] if failures else "",
         )
+
+
+def as_json(value: Any) -> Any:
+    """Plain data with infinite numbers as text: JSON has none."""
+    if isinstance(value, Mapping):
+        return {key: as_json(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [as_json(v) for v in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return value
+
+
+def _with_floats(kind: Any, data: Mapping[str, Any], *names: str) -> Any:
+    return kind(**{**data, **{name: float(data[name]) for name in names}})
+
+
+def _failure(record: Mapping[str, Any]) -> Failure:
+    own = {name: record[name] for name in Failure.__dataclass_fields__}
+    own["identity"] = Identity.parse(record["identity"])
+    own["failed"] = tuple(record["failed"])
+    own["excess"] = float(record["excess"])
+    own["missed"] = tuple(Missed(**missed) for missed in record["missed"])
+    return Failure(**own)

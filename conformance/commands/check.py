@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from datetime import date
 from pathlib import Path
 
 import click
@@ -14,16 +15,23 @@ from codegen.backends import TARGETS
 from codegen.errors import UserError, unknown
 from codegen.files import write_bytes, write_text
 from codegen.library import VERSION, Library, load_library
-from conformance.check.engine import Backend, backend, check_function
+from conformance.check.ahead import prepared_ahead
+from conformance.check.backend import Backend, backend
+from conformance.check.engine import check_function
 from conformance.check.junit import junit_bytes
 from conformance.check.merge import merge as join_results
 from conformance.check.replay import cases_of
+from conformance.check.report import lines, verdict_lines
 from conformance.check.result import FunctionResult
 from conformance.check.shard import Shard
-from conformance.commands.check_drivers import check_drivers, replay_on_driver
+from conformance.commands.check_drivers import Plan, check_drivers, replay_on_driver
+from conformance.drivers import known
+from conformance.drivers.modes import DEFAULT
 from targets import TargetUnavailable
 
 CHECKABLE = (*TARGETS, "numpy")
+DETAILED = 6
+"""Up to so many functions that were asked for by name are reported one by one."""
 
 
 @click.command("check")
@@ -35,11 +43,13 @@ CHECKABLE = (*TARGETS, "numpy")
 )
 @click.option("--mode", "modes", multiple=True, help="With --driver: a mode by name, or all; repeatable.")
 @click.option("--record", is_flag=True, help="With --driver: keep the results under conformance/results.")
+@click.option("--resume", is_flag=True, help="With --record: leave out what is recorded of these sources.")
 @click.option("--function", "functions", multiple=True, help="Check this function only; repeatable.")
 @click.option("--json", "json_file", type=click.Path(path_type=Path), help="Write the results as JSON.")
 @click.option(
     "--junit", "junit_file", type=click.Path(path_type=Path), help="Write the results as JUnit XML."
 )
+@click.option("--details", is_flag=True, help="Verdicts and accuracy of each function; as with --function.")
 @click.option("--replay", "replayed", help="Run cases again: a printed identity, or a file of --json.")
 @click.option("--shard", default="1/1", help="Check a fixed share of the functions and targets only: 2/3.")
 @click.option("--merge", is_flag=True, help="Join the results in FILES instead of checking.")
@@ -49,15 +59,21 @@ def command(
     drivers: tuple[str, ...],
     modes: tuple[str, ...],
     record: bool,
+    resume: bool,
     functions: tuple[str, ...],
     json_file: Path | None,
     junit_file: Path | None,
+    details: bool,
     replayed: str | None,
     shard: str,
     merge: bool,
     files: tuple[Path, ...],
 ) -> int:
-    """Check every function on every driver of this machine against references and declared bounds."""
+    """Check every function on this machine's drivers.
+
+    Every result is judged twice: by the interval that the target's specification permits, and by the declared
+    error bounds against a float64 reference. Finite input must give finite results.
+    """
     library = load_library()
     part = Shard.parse(shard)
     if merge or files:
@@ -65,6 +81,8 @@ def command(
     if replayed is not None:
         return run_replay(library, replayed)
     wanted = [library.function(name).name for name in functions] or list(library.public)
+    if resume and not record:
+        raise UserError("--resume needs --record")
     complaints: list[str] = []
     if drivers:
         if names:
@@ -72,15 +90,18 @@ def command(
         if record and part.of > 1:
             raise UserError("--record keeps the results of one machine; leave out --shard")
         wanted = [name for name in wanted if part.holds(name, "driver")]
-        results, missing, complaints = check_drivers(library, wanted, drivers, modes, record)
+        plan = Plan(library, wanted, record, resume)
+        results, missing, complaints = check_drivers(plan, drivers, modes)
     elif modes or record:
         raise UserError("--mode and --record need --driver")
     else:
         backends, missing = open_backends(names)
         results = run_checks(library, wanted, backends, part)
+        complaints = judge_known(results, backends)
     for sentence in missing:
         click.echo(f"skipped   {sentence}")
-    report(results)
+    for line in lines(results, details or 0 < len(functions) <= DETAILED):
+        click.echo(line)
     for sentence in complaints:
         click.echo(f"FAILED    {sentence}")
     write_results(results, missing, part, json_file, junit_file)
@@ -110,41 +131,30 @@ def open_backends(names: tuple[str, ...]) -> tuple[list[Backend], list[str]]:
 def run_checks(
     library: Library, functions: list[str], backends: list[Backend], part: Shard
 ) -> list[FunctionResult]:
-    """The shard's functions on all backends, with progress on a terminal."""
-    pairs = [(on, name) for on in backends for name in functions if part.holds(name, on.target)]
-    results = []
+    """The shard's functions on all backends, with progress on a terminal; backend after backend."""
+    pairs = {name: [on for on in backends if part.holds(name, on.target)] for name in functions}
+    names = [name for name, on in pairs.items() if on]
+    tables = list(dict.fromkeys(on.judged_by for on in backends))
+    results: dict[str, list[FunctionResult]] = {on.target: [] for on in backends}
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not sys.stderr.isatty()) as progress:
-        task = progress.add_task("checking", total=len(pairs))
-        for on, name in pairs:
-            progress.update(task, description=f"{on.target} {name}")
-            results.append(check_function(library, name, on))
+        task = progress.add_task("checking", total=len(names))
+        for name, prepared in prepared_ahead(library, names, tables):
+            progress.update(task, description=name)
+            for on in pairs[name]:
+                results[on.target].append(check_function(library, name, on, prepared=prepared))
             progress.advance(task)
-    return results
+    return [r for found in results.values() for r in found]
 
 
-def report(results: list[FunctionResult]) -> None:
-    """Failures in full, then one line per backend."""
-    for r in results:
-        if r.known:
-            click.echo(f"known     {r.function} on {r.backend}: {r.known}")
-            continue
-        if r.broken:
-            click.echo(f"FAILED    {r.function} on {r.backend}: {r.broken}")
-        for failure in r.failures:
-            click.echo("FAILED    " + "\n          ".join(failure.lines()))
-    width = max((len(r.backend) for r in results), default=9)
-    for name in dict.fromkeys(r.backend for r in results):
-        own = [r for r in results if r.backend == name]
-        passed = sum(r.passed for r in own)
-        known = sum(bool(r.known) for r in own)
-        lanes = sum(r.lanes for r in own)
-        bad = sum(r.non_finite for r in own)
-        click.echo(
-            f"{name.ljust(width)} {passed} of {len(own)} functions within their bounds, "
-            f"{f'{known} known failures, ' if known else ''}{lanes} inputs, "
-            f"{bad} non-finite results, {sum(r.seconds for r in own):.1f} s  ({own[0].driver})"
-        )
+def judge_known(results: list[FunctionResult], backends: list[Backend]) -> list[str]:
+    """Mark the failures that are known of these devices; sentences where an entry no longer fits."""
+    runs = [
+        known.Judged(name, DEFAULT, [r for r in results if r.target == on.target])
+        for on in backends
+        if (name := known.name_of(on.device))
+    ]
+    return known.judge(runs, known.read(), date.today()).complaints
 
 
 def write_results(
@@ -180,7 +190,8 @@ def run_merge(files: tuple[Path, ...], asked: bool, json_file: Path | None, juni
     if not files:
         raise UserError("--merge needs the files that vair check --json wrote")
     merged = join_results(files)
-    report(merged.results)
+    for line in lines(merged.results, details=False):
+        click.echo(line)
     for shard in merged.missing:
         click.echo(f"MISSING   shard {shard}")
     write_results(merged.results, merged.skipped, Shard(), json_file, junit_file)
@@ -193,8 +204,8 @@ def run_replay(library: Library, text: str) -> int:
     for case in cases_of(library, text):
         for remark in case.remarks:
             click.echo(remark)
-        if case.identity is not None and "+" in case.target:
-            status |= show_replay(replay_on_driver(library, case.identity))
+        if "+" in case.target:
+            status |= show_replay(replay_on_driver(library, case.identity, case.words))
             continue
         if case.target not in CHECKABLE:
             raise unknown("target", case.target, CHECKABLE)
@@ -205,13 +216,11 @@ def run_replay(library: Library, text: str) -> int:
 
 def show_replay(result: FunctionResult) -> int:
     """Print one replayed lane; returns the exit status."""
-    if result.broken:
-        click.echo(f"{result.function} on {result.driver}: {result.broken}")
     for failure in result.failures:
         click.echo("\n".join(failure.lines()[:-1]))
-    for bound in result.bounds:
-        if bound.lanes:
-            click.echo(f"{result.function} on {result.driver}\n  inputs    {bound.worst}")
-            click.echo(f"  bound     {bound.bound}\n  measured  {bound.measured:.6g}")
+    if not result.failures:
+        click.echo(f"{result.function} on {result.driver}" + (f": {result.broken}" if result.broken else ""))
+        for line in verdict_lines(result) if not result.broken else ():
+            click.echo(f"  {line}")
     click.echo("passed" if result.passed else "failed")
     return 0 if result.passed else 1

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
 from datetime import date
+from pathlib import Path
 
+import click
 from rich.console import Console
 from rich.progress import Progress
 
@@ -12,27 +19,41 @@ from codegen.errors import UserError, unknown
 from codegen.library import Library
 from conformance.check.identity import Identity
 from conformance.check.result import FunctionResult
-from conformance.drivers import known, record
-from conformance.drivers.modes import mode, modes_of
-from conformance.drivers.run import DriverRun, run_driver
+from conformance.drivers import known
+from conformance.drivers.modes import Mode, mode, modes_of
+from conformance.drivers.record import FOLDER, Recorder
+from conformance.drivers.run import run_driver
 from targets import Device, TargetUnavailable
 from targets.drivers import catalogue, present
 
 ALL = "all"
+DRIVERS_AT_ONCE = 2
+"""Drivers that run side by side; the modes of one driver follow each other."""
+
+
+@dataclass
+class Plan:
+    """What is to be checked, and what becomes of the results.
+
+    keep    whether to record the results
+    resume  whether to leave out what is recorded already, see Recorder.current
+    """
+
+    library: Library
+    functions: Sequence[str]
+    keep: bool = False
+    resume: bool = False
+    folder: Path = FOLDER
+    today: date = field(default_factory=date.today)
 
 
 def check_drivers(
-    library: Library,
-    functions: list[str],
-    names: tuple[str, ...],
-    mode_names: tuple[str, ...],
-    keep: bool,
+    plan: Plan, names: tuple[str, ...], mode_names: tuple[str, ...]
 ) -> tuple[list[FunctionResult], list[str], list[str]]:
     """All functions on the drivers, in the modes that each of them has.
 
     names       of drivers; "all" stands for every one that is here
     mode_names  the default mode if none; "all" for every one
-    keep        whether to record the results
     returns     results with known failures marked, a sentence per missing driver, and what known failures
                 no longer describe
     raises      UserError for an unknown name, a driver that was asked for and is not here, or none at all
@@ -42,17 +63,26 @@ def check_drivers(
             mode(name)
     entries = known.read()
     drivers, missing = find_drivers(names)
-    runs = [
-        run_mode(library, functions, name, device, mode_name)
-        for name, device in drivers.items()
-        for mode_name in (m.name for m in modes_of(catalogue()[name], mode_names))
-    ]
-    if not runs:
+    chosen = {name: modes_of(catalogue()[name], mode_names) for name in drivers}
+    if not any(chosen.values()):
         raise UserError(f"none of these drivers has the mode {', '.join(mode_names)}")
-    verdict = known.judge(runs, entries, date.today())
-    if keep:
-        record.keep(library, runs, date.today())
-    return [r for run in runs for r in run.results], missing, verdict.complaints
+    console = Console(stderr=True)
+    with (
+        tempfile.TemporaryDirectory(prefix="vair-check-") as folder,
+        Progress(console=console, transient=True, disable=not sys.stderr.isatty()) as progress,
+        ThreadPoolExecutor(DRIVERS_AT_ONCE) as threads,
+    ):
+        cache = Path(folder) if sum(map(len, chosen.values())) > 1 else None
+
+        def one(name: str) -> list[tuple[list[FunctionResult], list[str]]]:
+            return [
+                run_mode(plan, entries, name, drivers[name], how, cache, progress) for how in chosen[name]
+            ]
+
+        runs = [run for part in threads.map(one, drivers) for run in part]
+    results = [r for found, _ in runs for r in found]
+    complaints = list(dict.fromkeys(sentence for _, told in runs for sentence in told))
+    return results, missing, complaints
 
 
 def find_drivers(names: tuple[str, ...]) -> tuple[dict[str, Device], list[str]]:
@@ -70,22 +100,53 @@ def find_drivers(names: tuple[str, ...]) -> tuple[dict[str, Device], list[str]]:
     return found, missing
 
 
-def run_mode(library: Library, functions: list[str], name: str, device: Device, mode_name: str) -> DriverRun:
-    """One driver in one mode, with progress on a terminal."""
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not sys.stderr.isatty()) as progress:
-        task = progress.add_task(f"{name} ({mode_name})", total=len(functions))
-        return run_driver(
-            catalogue()[name], device, mode(mode_name), functions, lambda result: progress.advance(task)
-        )
+def run_mode(
+    plan: Plan,
+    entries: Sequence[known.KnownFailure],
+    name: str,
+    device: Device,
+    how: Mode,
+    cache: Path | None,
+    progress: Progress,
+) -> tuple[list[FunctionResult], list[str]]:
+    """One driver in one mode: its results, and what known failures no longer describe."""
+    chosen = catalogue()[name]
+    recorder = Recorder(plan.library, chosen, device, how, plan.today, plan.folder)
+    done = set(recorder.current(plan.functions)) if plan.resume else set()
+    wanted = [f for f in plan.functions if f not in done]
+    full_name = f"{name} {chosen.version_of(device)}".strip()
+    complaints: list[str] = []
+    task = progress.add_task(f"{name} ({how.name})", total=len(wanted))
+
+    def told(result: FunctionResult) -> None:
+        judged = known.Judged(full_name, how.name, [result])
+        complaints.extend(known.judge([judged], entries, plan.today).complaints)
+        if plan.keep:
+            recorder.add(result)
+        progress.advance(task)
+
+    started = time.monotonic()
+    run = run_driver(chosen, device, how, wanted, told, cache=cache)
+    if plan.keep and wanted:
+        recorder.write()
+    left_out = f", {len(done)} recorded before" if done else ""
+    seconds = time.monotonic() - started
+    click.echo(
+        f"ran       {name} ({how.name}): {len(wanted)} functions in {seconds:.0f} s{left_out}", err=True
+    )
+    return list(run.results), complaints
 
 
-def replay_on_driver(library: Library, identity: Identity) -> FunctionResult:
-    """One lane again, on the driver and in the mode that its identity names."""
+def replay_on_driver(library: Library, identity: Identity, words: str = "") -> FunctionResult:
+    """One lane again, on the driver and in the mode that its identity names.
+
+    words  the input itself, where a record brings it
+    """
     name, _, mode_name = identity.target.partition("+")
     how = mode(mode_name)
     function = library.function(identity.function).name
     devices, _ = find_drivers((name,))
     if not how.fits(catalogue()[name]):
         raise UserError(f"the driver {name} has no mode {mode_name}")
-    return run_driver(catalogue()[name], devices[name], how, [function], replay=identity).results[0]
+    run = run_driver(catalogue()[name], devices[name], how, [function], replay=identity, words=words)
+    return run.results[0]

@@ -11,9 +11,10 @@ from typing import Any
 
 from codegen.backends import dialect
 from codegen.errors import UserError, unknown
+from codegen.intervals import TABLES
 from codegen.ir.nodes import Function
 from codegen.kernels import KernelOptions
-from conformance.check.engine import Draw, draws
+from conformance.check.draws import Draw, draws
 from targets.drivers import Driver
 
 TABLE = Path(__file__).with_name("modes.toml")
@@ -34,6 +35,7 @@ class Mode:
     precise: bool = False
     prelude: str = ""
     options: tuple[str, ...] = ()
+    table: str = ""
     families: tuple[str, ...] | None = None
 
     def fits(self, driver: Driver) -> bool:
@@ -82,6 +84,8 @@ def parse(table: dict[str, Any], shown: str) -> dict[str, Mode]:
             found[name] = Mode(name=name, **values)
         except TypeError as e:
             raise UserError(f"{shown}: mode {name}: {str(e).partition(' ')[2]}") from None
+        if found[name].table not in ("", *TABLES):
+            raise unknown(f"accuracy table of mode {name}", found[name].table, TABLES)
     return found
 
 

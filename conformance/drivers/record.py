@@ -2,85 +2,177 @@
 
 from __future__ import annotations
 
+import functools
+import hashlib
 import json
+import math
 import re
-from collections.abc import Iterable
+import time
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from datetime import date
 from pathlib import Path
 from typing import Any
 
 from codegen.files import write_text
+from codegen.intervals import DEFAULT_TABLES, load_table
+from codegen.kernels import kernel
 from codegen.library import Library
+from conformance.check.accuracy import Accuracy
+from conformance.check.failure import FINITE, PERMITTED, WITHIN
+from conformance.check.interval import OUTSIDE
 from conformance.check.result import FunctionResult
 from conformance.drivers.known import excess
-from conformance.drivers.run import DriverRun
+from conformance.drivers.modes import Mode
+from targets import Device
+from targets.drivers import Driver
 
 FOLDER = Path(__file__).parents[1] / "results"
-FORMAT = 1
+FORMAT = 2
+WRITE_SECONDS = 20.0
+"""A run that is interrupted loses at most what it found in this time."""
 _TOKENS = re.compile(r"(?P<name>\w+)(?: = |: )|\[(?P<words>[0-9a-f ]+)\]|(?P<brace>[{}])")
 
 
-def keep(library: Library, runs: Iterable[DriverRun], today: date, folder: Path = FOLDER) -> list[Path]:
-    """Write the results into the files of their drivers; their other modes and functions stay as they are."""
-    written = []
-    for run in runs:
-        path = folder / f"{run.driver.slug(run.device)}.json"
-        data = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"modes": {}}
-        data["modes"][run.mode.name] = merged(
-            data["modes"].get(run.mode.name), mode_data(library, run, today)
-        )
+class Recorder:
+    """Keeps the results of one driver in one mode as they come, so that an interrupted run loses little.
+
+    What is recorded of other modes and of functions that are not run stays as it is.
+    """
+
+    def __init__(
+        self, library: Library, driver: Driver, device: Device, mode: Mode, today: date, folder: Path = FOLDER
+    ) -> None:
+        self.library, self.driver, self.device, self.mode, self.today = library, driver, device, mode, today
+        self.path = folder / f"{driver.slug(device)}.json"
+        self.results: list[FunctionResult] = []
+        self._written = time.monotonic()
+
+    def current(self, names: Iterable[str]) -> list[str]:
+        """Of these functions, the ones whose accepted record is of the present sources, bounds and tables."""
+        functions = self._data()["modes"].get(self.mode.name, {}).get("functions", {})
+        return [
+            name
+            for name in names
+            if (f := functions.get(name)) is not None
+            and f.get("judged") == fingerprint(self.library, name, self.driver.target, self.mode)
+            and accepted(f)
+        ]
+
+    def add(self, result: FunctionResult) -> None:
+        """Take a result in; write it now and then."""
+        self.results.append(result)
+        if time.monotonic() - self._written > WRITE_SECONDS:
+            self.write()
+
+    def write(self) -> Path:
+        """Put everything so far into the driver's file."""
+        data = self._data()
+        new = mode_data(self.library, self.mode, self.results, self.today)
+        data["modes"][self.mode.name] = merged(data["modes"].get(self.mode.name), new)
         whole = {
             "format": FORMAT,
-            "driver": run.driver.name,
-            "title": run.driver.title,
-            "version": run.driver.version_of(run.device),
-            "device": asdict(run.device),
+            "driver": self.driver.name,
+            "title": self.driver.title,
+            "version": self.driver.version_of(self.device),
+            "device": asdict(self.device),
             "modes": dict(sorted(data["modes"].items())),
         }
-        write_text(path, as_text(whole))
-        written.append(path)
-    return written
+        write_text(self.path, as_text(whole))
+        self._written = time.monotonic()
+        return self.path
+
+    def _data(self) -> dict[str, Any]:
+        data: dict[str, Any] = {"modes": {}}
+        if self.path.exists():
+            data = json.loads(self.path.read_text(encoding="utf-8"))
+        return data
+
+
+def accepted(f: Mapping[str, Any]) -> bool:
+    """Whether a recorded function passed, or failed as expected."""
+    bad = {FINITE: f["non_finite"] > 0, PERMITTED: f["permitted"] == OUTSIDE, WITHIN: not f["within"]}
+    return all(name in f.get("known", {}) for name, is_bad in bad.items() if is_bad)
+
+
+@functools.cache
+def fingerprint(library: Library, name: str, target: str, mode: Mode) -> str:
+    """Hash of what a verdict depends on: the emitted program, bounds, accuracy table, number of inputs."""
+    table = load_table(mode.table or DEFAULT_TABLES[target])
+    parts = [
+        library.select([name]).source_hash,
+        kernel(library, name, target),
+        repr(library.bounds.get(name)),
+        repr(table),
+        repr(mode),
+        str(FORMAT),
+    ]
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 
 def merged(before: dict[str, Any] | None, new: dict[str, Any]) -> dict[str, Any]:
-    """A mode's data renewed: functions that were not run keep what was recorded, and so does the number of
-    inputs, which speaks of the run of most functions."""
-    if before is None or set(before["functions"]) <= set(new["functions"]):
+    """A mode's data renewed: functions that were not run keep what was recorded."""
+    if before is None:
         return new
     functions = {**before["functions"], **new["functions"]}
-    return {**new, "inputs": before["inputs"], "functions": functions}
+    return {**new, "functions": {name: functions[name] for name in sorted(functions)}}
 
 
-def mode_data(library: Library, run: DriverRun, today: date) -> dict[str, Any]:
+def mode_data(library: Library, mode: Mode, results: Iterable[FunctionResult], today: date) -> dict[str, Any]:
     """The results of one mode as plain data."""
     return {
         "date": today.isoformat(),
         "sources": library.select().source_hash,
-        "inputs": sum(r.lanes for r in run.results),
-        "functions": {r.function: function_data(library, r) for r in run.results},
+        "functions": {r.function: function_data(library, r, mode) for r in results},
     }
 
 
-def function_data(library: Library, r: FunctionResult) -> dict[str, Any]:
-    """One function: how far it came, and its largest error under each bound with the input in hex."""
+def function_data(library: Library, r: FunctionResult, mode: Mode) -> dict[str, Any]:
+    """One function: how far it came, its verdicts, and its largest errors with the inputs in hex."""
     data: dict[str, Any] = {
         "sources": library.select([r.function]).source_hash,
+        "judged": fingerprint(library, r.function, r.target, mode),
         "stage": r.stage,
-        "within": r.passed,
+        "inputs": r.lanes,
+        "within": r.within,
+        "permitted": r.interval_verdict,
         "non_finite": r.non_finite,
-        "errors": [
-            {"bound": b.limit, "measured": float(f"{b.measured:.4g}"), "worst": hex_words(b.worst)}
-            for b in r.bounds
-        ],
     }
+    if r.permitted is not None:
+        data["table"] = r.permitted.table
+        if r.permitted.unguaranteed:
+            data["unguaranteed"] = r.permitted.unguaranteed
+        if r.permitted.rearranged:
+            data["rearranged"] = r.permitted.rearranged
+        if r.permitted.outside:
+            data["outside"] = {
+                "results": r.permitted.outside,
+                "excess": short(r.permitted.excess),
+                "worst": hex_words(r.permitted.worst),
+            }
+    data["errors"] = [
+        {"bound": b.limit, "measured": short(b.measured), "worst": hex_words(b.worst)} for b in r.bounds
+    ]
+    data["accuracy"] = [accuracy_data(a) for a in r.accuracy]
     if r.broken:
         data["broken"] = r.broken.splitlines()[0][:200]
-    if not r.passed:
-        data["excess"] = str(excess(r)) if r.broken or r.non_finite else float(f"{excess(r):.4g}")
+    if not r.within or r.non_finite:
+        data["excess"] = short(excess(r))
     if r.known:
         data["known"] = r.known
     return data
+
+
+def accuracy_data(a: Accuracy) -> dict[str, Any]:
+    """A distribution of errors with its worst input."""
+    floor = {"floor": a.floor} if a.floor else {}
+    figures = {"maximum": short(a.maximum), "p999": short(a.p999), "median": short(a.median)}
+    return {"measure": a.measure, **floor, **figures, "worst": hex_words(a.worst)}
+
+
+def short(number: float) -> float | str:
+    """Four digits; infinite numbers as text, for JSON has none."""
+    return float(f"{number:.4g}") if math.isfinite(number) else str(number)
 
 
 def hex_words(inputs: str) -> str:

@@ -37,6 +37,11 @@ class DriverRun:
     mode: Mode
     results: tuple[FunctionResult, ...]
 
+    @property
+    def full_name(self) -> str:
+        """Name and version of the driver, as lists of known failures speak of it."""
+        return f"{self.driver.name} {self.driver.version_of(self.device)}".strip()
+
 
 def run_driver(
     chosen: Driver,
@@ -48,6 +53,8 @@ def run_driver(
     uniform: int | None = None,
     family: int | None = None,
     replay: Identity | None = None,
+    words: str = "",
+    cache: Path | None = None,
 ) -> DriverRun:
     """Check functions on a driver in a mode.
 
@@ -55,6 +62,8 @@ def run_driver(
     told     called with every result as it comes
     uniform, family  how many points; None: as many as the mode asks for
     replay   only this lane
+    words    the lane's input, where a record brings it
+    cache    a folder in which processes share references and intervals
     raises   TargetUnavailable where the driver does not open; UserError where someone ended its process
 
     Where the process ends before a function's result, that function failed to execute, and a new process
@@ -63,8 +72,8 @@ def run_driver(
     results: list[FunctionResult] = []
     left = list(functions)
     while left:
-        job = Job(chosen.name, how.name, tuple(left), uniform, family, replay)
-        found, status, words = _process(chosen, job, told)
+        job = Job(chosen.name, how.name, tuple(left), uniform, family, replay, words, cache)
+        found, status, last = _process(chosen, job, told)
         if -status in OUTSIDE:
             raise UserError(f"the process of {chosen.name} was ended from outside, by signal {-status}")
         results += found
@@ -76,7 +85,7 @@ def run_driver(
                 "; ".join(strings(device)),
                 backend=backend_name(chosen.name, how.name),
                 stage="execute",
-                broken=f"does not execute: the driver's process ended with status {status} {words}".rstrip(),
+                broken=f"does not execute: the driver's process ended with status {status} {last}".rstrip(),
             )
             told(lost)
             results.append(lost)

@@ -10,14 +10,19 @@ import os
 import pickle
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, BinaryIO
 
 from codegen.errors import UserError
 from codegen.execute import execute
+from codegen.kernels import kernel
 from codegen.library import Library, load_library
-from conformance.check.engine import Backend, check_function, draw, only_lane
+from conformance.check.backend import Backend, told
+from conformance.check.engine import check_function
 from conformance.check.identity import Identity
+from conformance.check.prepared import prepare
+from conformance.check.replay import lane_of
 from conformance.check.result import FunctionResult
 from conformance.drivers.modes import Mode, mode
 from targets import BuildFailed, TargetUnavailable
@@ -30,6 +35,8 @@ class Job:
 
     uniform, family  how many points; None: as many as the mode asks for
     replay           only this lane
+    words            the lane's input, where a record brings it; drawn anew if empty
+    cache            a folder in which processes share references and intervals
     """
 
     driver: str
@@ -38,19 +45,30 @@ class Job:
     uniform: int | None = None
     family: int | None = None
     replay: Identity | None = None
+    words: str = ""
+    cache: Path | None = None
 
 
 def driver_backend(chosen: Driver, how: Mode) -> Backend:
     """The backend of a driver in a mode, in a process with its environment; raises TargetUnavailable."""
     runtime = open_driver(chosen, **how.settings())
     options = how.kernel_options(chosen)
-    d = runtime.device
 
     def run(library: Library, name: str, inputs: Mapping[str, Any]) -> Any:
         return execute(library, name, inputs, runtime, options=options)
 
+    def text(library: Library, name: str) -> str:
+        # Literal arguments differ from program to program; the rest is the same.
+        return kernel(library, name, chosen.target, replace(options, source="words"))
+
     return Backend(
-        chosen.target, f"{d.api}; {d.driver}; {d.device}", run, backend_name(chosen.name, how.name)
+        chosen.target,
+        told(runtime.device),
+        run,
+        backend_name(chosen.name, how.name),
+        how.table,
+        text,
+        runtime.device,
     )
 
 
@@ -64,10 +82,10 @@ def judge(library: Library, name: str, on: Backend, job: Job) -> FunctionResult:
     try:
         function, again = library.function(name), job.replay
         if again is not None:
-            points = [only_lane(draw(function, again.family, again.count, again.seed), again.lane)]
+            points = [lane_of(function, again, job.words)]
         else:
             points = mode(job.mode).draws(function, job.uniform, job.family)
-        return check_function(library, name, on, points)
+        return check_function(library, name, on, prepared=prepare(library, name, points, job.cache))
     except UserError as e:
         return _stopped(name, on, "emit", f"is not emitted: {e}")
     except BuildFailed as e:

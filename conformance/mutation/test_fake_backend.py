@@ -1,82 +1,61 @@
-"""A backend that is wrong on purpose is judged exactly as planned, by bounds and by intervals.
+"""A backend that is wrong on purpose is judged exactly as planned, under both verdicts of `vair check`.
 
-Plan. Each deviation of deviations.toml on each of its functions; a poor sine on one line of source; and the
-deviations themselves, so that none is right by accident.
+Plan. Each deviation of deviations.toml on each of its functions; and the deviations themselves, so that none
+is right by accident.
 
 Not covered here: what devices really do (conformance/execute).
 """
 
 from __future__ import annotations
 
-from pathlib import Path
+import functools
 from typing import Any
 
 import numpy as np
 import pytest
 
-from codegen.bounds import Bound
-from codegen.intervals import permitted
-from codegen.library import Library, load_library
-from conformance.check import engine, measure
-from conformance.check.engine import Draw
-from conformance.mutation.fake_backend import AFTER, DEVIATIONS, RARE, SINE_ERROR, WITHIN, fake_backend, ulps
+from codegen.library import load_library
+from conformance.check import engine
+from conformance.check.draws import draws
+from conformance.check.interval import PERMITTED
+from conformance.check.prepared import Prepared, prepare
+from conformance.mutation.fake_backend import AFTER, DEVIATIONS, RARE, WITHIN, fake_backend, ulps
 from conformance.mutation.plan import read
-from conformance.unit.support.sources import library_of
 
-TABLE = "wgsl"
 UNIFORM, FAMILY = 1500, 150
 PLANNED: list[dict[str, Any]] = read("deviations.toml")["deviation"]
-CASES = [
-    (entry["name"], function, judge, entry[judge])
-    for entry in PLANNED
-    for function in entry["functions"]
-    for judge in ("bounds", "intervals")
-    if judge in entry
-]
+CASES = list(dict.fromkeys((entry["name"], function) for entry in PLANNED for function in entry["functions"]))
+JUDGES = ("bounds", "intervals")
 ON_A_PROBE = {"poor sine", "sine worse than permitted"}
-"""Deviations of an operation that the library avoids: tried on a function of one line."""
+"""Deviations of an operation that the library avoids: tried on one line in unit/test_check_interval.py."""
 
 
-def drawn(name: str) -> list[Draw]:
-    return list(engine.draws(load_library().function(name), UNIFORM, FAMILY))
-
-
-def permitted_everywhere(library: Library, name: str, deviation: str, draws: list[Draw]) -> bool:
-    on = fake_backend(deviation)
-    return all(
-        permitted(library, name, d.inputs, TABLE).contains(on.run(library, name, d.inputs)).all()
-        for d in draws
-    )
-
-
-@pytest.mark.parametrize(("deviation", "name", "judge", "verdict"), CASES)
-def test_verdict_is_as_planned(deviation: str, name: str, judge: str, verdict: str) -> None:
+@functools.cache
+def prepared(name: str) -> Prepared:
+    """Inputs, references and intervals of a function, for all deviations."""
     library = load_library()
-    if judge == "bounds":
-        passed = engine.check_function(library, name, fake_backend(deviation), drawn(name)).passed
-    else:
-        passed = permitted_everywhere(library, name, deviation, drawn(name))
-    assert passed == (verdict == "pass")
+    return prepare(library, name, draws(library.function(name), UNIFORM, FAMILY))
 
 
-@pytest.mark.parametrize(
-    ("deviation", "is_permitted"),
-    [("faithful", True), ("poor sine", True), ("sine worse than permitted", False)],
-)
-def test_poor_sine_is_permitted_and_yet_visible(deviation: str, is_permitted: bool, tmp_path: Path) -> None:
-    library = library_of(tmp_path, "def probe(x: X) -> f32:\n    return sin(x)\n")
-    inputs = {"x": np.linspace(-3.0, 3.0, 2001, dtype=np.float32)}
-    assert permitted_everywhere(library, "probe", deviation, [Draw("here", 2001, 0, inputs)]) == is_permitted
-    got = fake_backend(deviation).run(library, "probe", inputs)
-    bound = Bound("probe", "absolute", 0.0, "here", "this test")
-    error = float(measure.error(bound, got, np.sin(inputs["x"].astype(np.float64))).max())
-    assert (error > 0.9 * SINE_ERROR) == (deviation != "faithful")
+@pytest.mark.parametrize(("deviation", "name"), CASES)
+def test_verdicts_are_as_planned(deviation: str, name: str) -> None:
+    result = engine.check_function(load_library(), name, fake_backend(deviation), prepared=prepared(name))
+    found = {
+        "bounds": result.within and not result.non_finite,
+        "intervals": result.interval_verdict == PERMITTED,
+    }
+    planned = [e for e in PLANNED if e["name"] == deviation and name in e["functions"]]
+    for entry in planned:
+        for judge in JUDGES:
+            if judge in entry:
+                assert found[judge] == (entry[judge] == "pass"), entry["why"]
+    assert bool(result.failures) == (not result.passed)
 
 
 def test_every_deviation_has_a_planned_verdict() -> None:
     assert {entry["name"] for entry in PLANNED} | ON_A_PROBE == set(DEVIATIONS)
-    assert all({"bounds", "intervals"} & set(entry) and entry["why"] for entry in PLANNED)
-    assert {entry.get(judge, "pass") for entry in PLANNED for judge in ("bounds", "intervals")} == {
+    assert all(set(JUDGES) & set(entry) and entry["why"] for entry in PLANNED)
+    assert {entry.get(judge, "pass") for entry in PLANNED for judge in JUDGES} == {
         "pass",
         "fail",
     }
@@ -97,7 +76,7 @@ def test_deviations_do_what_they_say() -> None:
 def test_deviating_operations_reach_the_result(entry: dict[str, Any]) -> None:
     library = load_library()
     for name in entry["functions"]:
-        inputs = drawn(name)[0].inputs
+        inputs = prepared(name).sample.inputs
         faithful, got = (fake_backend(d).run(library, name, inputs) for d in ("faithful", entry["name"]))
         assert not np.array_equal(faithful, got)
         assert np.array_equal(faithful, engine.backend("numpy").run(library, name, inputs))

@@ -12,9 +12,12 @@ import pytest
 from codegen.kernels import kernel
 from codegen.library import load_library
 from conformance import cases
+from conformance.check import backend as backends
 from conformance.check import engine
 from conformance.check.engine import Backend, check_function
+from conformance.check.sample import together
 from conformance.unit.support.sources import library_of
+from targets import Device
 
 SOURCE = "def probe(x: X) -> f32:\n    return x\n"
 
@@ -40,7 +43,7 @@ def test_draws_take_every_family_and_can_be_repeated(name: str) -> None:
 
 
 def test_check_draws_for_itself() -> None:
-    result = check_function(load_library(), "half_vector", engine.backend("numpy"))
+    result = check_function(load_library(), "half_vector", engine.backend("numpy"), intervals=False)
     assert result.passed
     assert result.target == "numpy"
     assert "numpy" in result.driver
@@ -48,13 +51,16 @@ def test_check_draws_for_itself() -> None:
 
 
 def test_backend_runs_a_target_and_names_its_driver(monkeypatch: pytest.MonkeyPatch) -> None:
-    runtime = SimpleNamespace(device=SimpleNamespace(api="an API", driver="a driver 1.2", device="a device"))
-    monkeypatch.setattr(engine, "open_runtime", {"glsl": runtime}.__getitem__)
-    monkeypatch.setattr(engine, "execute", lambda *arguments: arguments)
+    runtime = SimpleNamespace(device=Device("glsl", "an API", "a driver 1.2", "a device"))
+    monkeypatch.setattr(backends, "open_runtime", {"glsl": runtime}.__getitem__)
+    monkeypatch.setattr(backends, "execute", lambda *arguments: arguments)
     found = engine.backend("glsl")
     assert (found.target, found.driver) == ("glsl", "an API; a driver 1.2; a device")
     library, inputs = load_library(), {"x": np.array([1], np.float32)}
     assert found.run(library, "probe", inputs) == (library, "probe", inputs, runtime)
+    assert (found.device, found.judged_by) == (runtime.device, "glsl")
+    assert found.text is not None
+    assert found.text(library, "mirror") == kernel(library, "mirror", "glsl")
 
 
 def test_evaluator_is_a_backend_without_a_driver() -> None:
@@ -77,14 +83,35 @@ def test_one_lane_of_a_draw_keeps_its_values() -> None:
         assert np.array_equal(cut[0], full[7])
 
 
-@pytest.mark.parametrize("target", ["numpy", "glsl", "opencl"])
-def test_result_names_source_and_emitted_text(target: str) -> None:
+@pytest.mark.parametrize(("target", "table"), [("numpy", "wgsl"), ("glsl", "glsl"), ("opencl", "opencl")])
+def test_result_names_source_emitted_text_and_table(target: str, table: str) -> None:
     library = load_library()
     run = engine.backend("numpy").run
-    result = check_function(library, "mirror", Backend(target, "a driver", run), [])
-    assert result.source == library.select(["mirror"]).source_hash
-    assert result.backend == target
-    text = b"" if target == "numpy" else kernel(library, "mirror", target).encode()
-    assert result.emitted == (sha256(text).hexdigest()[:16] if text else "")
-    named = check_function(library, "mirror", Backend(target, "a driver", run, "numpy"), [])
+    drawn = list(engine.draws(library.function("mirror"), 5, 5))[:1]
+    plain = check_function(library, "mirror", Backend(target, "a driver", run), drawn)
+    assert plain.source == library.select(["mirror"]).source_hash
+    assert (plain.backend, plain.emitted) == (target, "")
+    assert plain.permitted is not None
+    assert plain.permitted.table == table
+    on = Backend(target, "a driver", run, "numpy", "vulkan", lambda library, name: f"text of {name}")
+    named = check_function(library, "mirror", on, drawn)
     assert named.backend == "numpy"
+    assert named.emitted == sha256(b"text of mirror").hexdigest()[:16]
+    assert named.permitted is not None
+    assert named.permitted.table == "vulkan"
+
+
+def test_lane_of_joined_draws_knows_where_it_comes_from() -> None:
+    parts = list(engine.draws(load_library().function("mirror"), 7, 3))
+    sample = together(parts)
+    assert sample.lanes == sum(d.count for d in parts)
+    lane = 0
+    for d in parts:
+        for k in range(d.count):
+            from_, number = sample.origin(lane)
+            assert (from_.family, from_.count, from_.seed, number) == (d.family, d.count, d.seed, k)
+            assert np.array_equal(sample.inputs["l"][lane], d.inputs["l"][k])
+            lane += 1
+    assert sample.uniform.sum() == 7
+    with pytest.raises(ValueError, match="nothing was drawn"):
+        together([])

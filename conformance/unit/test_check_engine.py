@@ -1,7 +1,7 @@
-"""The verdict: what passes, what fails, and that a failure says all that replaying it needs.
+"""The verdict "within bound": what passes, what fails, and that a failure says all that replaying it needs.
 
 Plan. A one-function library with bounds of its own, a backend and a reference that return given numbers, so
-that every count of the result is known beforehand.
+that every count of the result is known beforehand. Intervals are left out: see test_check_interval.py.
   judged     the bound itself still passes; anything above it, NaN among it, fails; other lanes stay unjudged
   draws      several draws add up: no tolerance carries over, the worst lane is the worst of all
   exempt     ambiguous lanes and lanes outside every bound are counted, yet must be finite
@@ -19,8 +19,9 @@ import numpy as np
 import pytest
 
 from codegen.library import Library, load_library
-from conformance.check import engine
+from conformance.check import engine, prepared
 from conformance.check.engine import Backend, Draw, check_function
+from conformance.check.failure import FINITE
 from conformance.check.result import FunctionResult
 from conformance.reference import PROPERTY_ONLY
 from conformance.unit.support.sources import library_of
@@ -52,13 +53,12 @@ def check(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Func
         made = [
             Draw(f"draw{k}", len(t[0]), 7 + k, {"x": t[0].astype(np.float32)}) for k, t in enumerate(tables)
         ]
-        results = iter([t[1].astype(np.float32) for t in tables])
-        wanted = iter([t[2] for t in tables])
-        monkeypatch.setattr(engine, "find_reference", lambda *_: lambda x: next(wanted))
+        results, wanted = (np.concatenate([t[k] for t in tables]) for k in (1, 2))
+        monkeypatch.setattr(prepared, "find_reference", lambda *_: lambda x: wanted)
         if doubtful is not None:
-            monkeypatch.setattr(engine, "ambiguous", lambda name, inputs, base: doubtful(inputs["x"]))
-        on = Backend(target, "a driver", lambda *_: next(results))
-        return check_function(library, "probe", on, made)
+            monkeypatch.setattr(prepared, "ambiguous", lambda name, inputs, base: doubtful(inputs["x"]))
+        on = Backend(target, "a driver", lambda *_: results.astype(np.float32))
+        return check_function(library, "probe", on, made, intervals=False)
 
     return run
 
@@ -110,10 +110,12 @@ def test_failure_of_words_has_no_ulps(tmp_path: Path, monkeypatch: pytest.Monkey
     exact = '[[probe]]\nmeasure = "exact"\ndomain = "all"\norigin = "derived"\n'
     library = library_with(tmp_path, exact, "def probe(n: u32) -> u32:\n    return n\n")
     inputs = {"n": np.array([1, 2], np.uint32)}
-    monkeypatch.setattr(engine, "find_reference", lambda *_: lambda n: n)
+    monkeypatch.setattr(prepared, "find_reference", lambda *_: lambda n: n)
     on = Backend("numpy", "a driver", lambda *_: np.array([1, 3], np.uint32))
-    (failure,) = check_function(library, "probe", on, [Draw("d", 2, 0, inputs)]).failures
-    assert (failure.identity.lane, failure.error) == (1, "exact inf exceeds 0")
+    (failure,) = check_function(library, "probe", on, [Draw("d", 2, 0, inputs)], intervals=False).failures
+    assert failure.identity.lane == 1
+    assert [m.error for m in failure.missed] == ["exact inf exceeds 0"]
+    assert failure.distance == ""
 
 
 def test_figures_of_infinite_errors_are_infinite(check: Check) -> None:
@@ -125,7 +127,7 @@ def test_figures_of_infinite_errors_are_infinite(check: Check) -> None:
 
 def test_numbers_of_a_failure_are_short(check: Check) -> None:
     (failure,) = check(ALL.replace("0.5", "0.123456789"), [(0, 1.0 / 3.0, 0.0)]).failures
-    assert failure.error.startswith("absolute 0.3333 exceeds 0.1235, ")
+    assert failure.missed[0].error == "absolute 0.3333 exceeds 0.1235"
 
 
 def test_worst_lane_is_kept_even_where_all_is_exact(check: Check) -> None:
@@ -152,8 +154,8 @@ def test_result_that_is_not_finite_fails_everywhere(check: Check) -> None:
     assert result.non_finite == 3
     assert [f.identity.lane for f in result.failures] == [0, 1, 3]
     assert {f.reason for f in result.failures} == {"the result is not finite"}
-    assert {f.origin for f in result.failures} == {"the contract of every function"}
-    assert {f.bound for f in result.failures} == {"finite input gives a finite result"}
+    assert {f.failed for f in result.failures} == {(FINITE,)}
+    assert all("every finite input must give a finite result" in f.lines()[-2] for f in result.failures)
     assert result.bounds[0].lanes == 1
 
 
@@ -188,7 +190,7 @@ def test_overlapping_bounds_are_judged_each(check: Check) -> None:
     tight = BOUND.format("tight", "derived", "where = { x = [0, 1] }").replace("0.5", "0.125")
     result = check(ALL + tight, [(0, 0.25, 0), (2, 0.25, 0)])
     assert [b.failures for b in result.bounds] == [0, 1]
-    assert [f.bound for f in result.failures] == ["absolute <= 0.125: tight"]
+    assert [[m.bound for m in f.missed] for f in result.failures] == [["absolute <= 0.125: tight"]]
 
 
 def test_bounds_of_other_targets_are_left_out(check: Check) -> None:
@@ -203,7 +205,7 @@ def test_bounds_of_other_targets_are_left_out(check: Check) -> None:
 def test_failures_are_reported_worst_first_and_counted_beyond_the_limit(check: Check) -> None:
     lanes = [(k, k, 0.0) for k in range(10)]
     result = check(ALL, lanes, lanes)
-    assert [f.identity.lane for f in result.failures] == [9, 8, 7, 6, 5]
+    assert [f.identity.lane for f in result.failures] == [9, 9, 8, 8, 7]
     assert engine.MAX_FAILURES == 5
     assert result.bounds[0].failures == 18
     mixed = check(ALL, [(k, np.nan, 0.0) for k in range(3)], lanes)
@@ -215,7 +217,7 @@ def test_failures_are_reported_worst_first_and_counted_beyond_the_limit(check: C
         ("draw1", 8),
     ]
     many = check(ALL, lanes, [(k, np.nan, 0.0) for k in range(3)])
-    assert len(many.failures) == 5
+    assert [f.identity.family for f in many.failures] == ["draw1"] * 3 + ["draw0"] * 2
     assert many.non_finite == 3
 
 
@@ -224,14 +226,14 @@ def test_failure_says_what_replaying_needs(check: Check) -> None:
     (failure,) = result.failures
     assert str(failure.identity) == "probe/numpy/draw0/3/7/1"
     assert failure.lines() == [
-        "probe on a driver: outside its bound",
-        "  inputs    x = 0.100000001 [3dcccccd]",
-        "  got       3 [40400000]",
-        "  expected  1",
-        f"  error     absolute 2 exceeds 0.5, {2.0**24:.4g} ULP",
-        "  bound     absolute <= 0.5: everywhere",
-        "  origin    derived here",
-        "  replay    vair check --replay probe/numpy/draw0/3/7/1",
+        "probe on a driver: outside its declared bound",
+        "  inputs     x = 0.100000001 [3dcccccd]",
+        "  got        3 [40400000]",
+        f"  reference  1 ({2.0**24:.4g} ULP away)",
+        "  exact      0.10000000149011612 (the same program in 50 digits)",
+        "  bound      MISSED: absolute 2 exceeds 0.5; declared: absolute <= 0.5: everywhere",
+        "             origin: derived here",
+        "  replay     vair check --replay probe/numpy/draw0/3/7/1",
     ]
     data = result.as_data()
     assert (data["passed"], data["lanes"], data["broken"]) == (False, 3, None)
@@ -259,14 +261,15 @@ def test_struct_failure_shows_the_field_of_the_bound(tmp_path: Path, monkeypatch
     library = library_with(tmp_path, ALL + 'field = "high"\n', PAIR)
     got = {"low": np.array([9, 9], np.float32), "high": np.array([[0, 0, 0], [0, 1, 0]], np.float32)}
     expected = {"low": np.zeros(2), "high": np.zeros((2, 3))}
-    monkeypatch.setattr(engine, "find_reference", lambda *_: lambda x: expected)
+    monkeypatch.setattr(prepared, "find_reference", lambda *_: lambda x: expected)
     on = Backend("numpy", "a driver", lambda *_: got)
-    (failure,) = check_function(
-        library, "probe", on, [Draw("d", 2, 0, {"x": np.array([1, 2], np.float32)})]
-    ).failures
+    drawn = [Draw("d", 2, 0, {"x": np.array([1, 2], np.float32)})]
+    (failure,) = check_function(library, "probe", on, drawn, intervals=False).failures
     assert failure.identity.lane == 1
-    assert failure.error == f"absolute 1 exceeds 0.5, high {2.0**149:.4g} ULP"
-    assert failure.bound.startswith("high: ")
+    (missed,) = failure.missed
+    assert missed.error == "absolute 1 exceeds 0.5"
+    assert failure.distance == f"low {9 * 2.0**149:.4g} ULP, high {2.0**149:.4g} ULP"
+    assert missed.bound.startswith("high: ")
     assert failure.got == "{low: 9 [41100000], high: (0, 1, 0) [00000000 3f800000 00000000]}"
 
 
@@ -304,7 +307,7 @@ def test_only_variants_take_the_reference_and_the_exemptions_of_their_base(
         asked.append((name, of))
         return np.zeros(10, np.bool_)
 
-    monkeypatch.setattr(engine, "ambiguous", nothing)
+    monkeypatch.setattr(prepared, "ambiguous", nothing)
     run = engine.backend("numpy").run
     for name in ("half_vector", "sin_angle_cosine", "strand_cosine_banks_printed"):
         check_function(
@@ -312,6 +315,7 @@ def test_only_variants_take_the_reference_and_the_exemptions_of_their_base(
             name,
             Backend("numpy", "a driver", run),
             list(engine.draws(library.function(name), 10, 10))[:1],
+            intervals=False,
         )
     assert asked == [
         ("half_vector", None),

@@ -17,6 +17,7 @@ from conformance.check.result import FunctionResult
 from conformance.check.shard import Shard
 
 FUNCTION = "sin_angle"
+GOOD = {"finite": True, "permitted": "permitted", "within bound": True}
 
 
 def worse(library: Any, name: str, inputs: Any) -> Any:
@@ -40,7 +41,10 @@ def test_a_record_holds_all_that_replaying_needs(bad_result: FunctionResult) -> 
     assert record["function"] == FUNCTION
     assert record["driver"] == "a bad driver"
     assert record["source"] == load_library().select([FUNCTION]).source_hash
-    assert {"got", "expected", "seed", "emitted", "bound", "identity"} <= set(record)
+    needed = {"got", "expected", "exact", "interval", "low", "high", "seed", "emitted", "program", "missed"}
+    assert needed <= set(record)
+    assert record["failed"] == ["permitted", "within bound"]
+    assert record["low"] <= float(record["exact"]) <= record["high"] < float(record["got"].split()[0])
     words = dict(part.split("=") for part in record["words"].split(";"))
     assert set(words) == {"a", "b"}
     assert all(len(word) == 8 for text in words.values() for word in text.split())
@@ -106,7 +110,9 @@ def test_merged_shards_are_the_whole(tmp_path: Path) -> None:
     assert run(["check", "--merge", *files, "--json", str(merged), "--junit", str(junit)]) == 0
     data = json.loads(merged.read_text(encoding="utf-8"))
     assert sorted(r["function"] for r in data["results"]) == sorted(names)
-    assert junit.read_text(encoding="utf-8").count("<testcase") == len(names)
+    assert all(r["verdicts"] == dict(GOOD) for r in data["results"])
+    assert all(r["permitted"]["lanes"] == r["lanes"] for r in data["results"])
+    assert junit.read_text(encoding="utf-8").count("<testcase") == 2 * len(names)
     assert run(["check", "--merge", *files[:2]]) == 1, "a shard is missing"
 
 

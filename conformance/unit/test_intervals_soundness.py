@@ -9,7 +9,7 @@ Plan. For each public function, random points of its domain and every family of 
              rounding set to either
   forks      following forks only narrows
   tightness  tables that promise too much are caught, operation by operation
-Not covered here: devices (conformance/execute/test_intervals_devices.py).
+Not covered here: devices (conformance/execute/test_functions.py).
 """
 
 from __future__ import annotations
