@@ -14,23 +14,29 @@ from typing import Any
 import numpy as np
 
 from codegen.evaluate.arrays import Array, Value
+from codegen.intervals import DEFAULT_TABLES, permitted
 from codegen.ir import nodes as ir
 from codegen.ir.types import Vector
 from codegen.library import Library
-from conformance.programs import judge
 from conformance.programs.extended import ExtendedLibrary
 
-REARRANGING = frozenset({"glsl", "wgsl"})
-"""Targets whose specification allows it."""
+REARRANGING = frozenset({"glsl", "glsl_es", "vulkan", "wgsl", "opencl_relaxed"})
+"""Accuracy tables of specifications that allow it."""
 _CHAINS = {"+": ("+", "-"), "-": ("+", "-"), "*": ("*",)}
 
 
-def explained(library: Library, name: str, inputs: Mapping[str, Any], target: str, value: Value) -> Array:
-    """Mask of the lanes whose value lies in the interval of the rearranged function."""
-    if target not in REARRANGING:
+def explained(
+    library: Library, name: str, inputs: Mapping[str, Any], target: str, value: Value, table: str = ""
+) -> Array:
+    """Mask of the lanes whose value lies in the interval of the rearranged function.
+
+    table  the accuracy table; that of the target's default dialect if empty; no device rearranges nothing
+    """
+    chosen = table or DEFAULT_TABLES.get(target, "")
+    if chosen not in REARRANGING:
         return np.zeros(1, np.bool_)
     functions = {f.name: _rearranged(f) for f in library.select([name]).functions}
-    allowed = judge.intervals(ExtendedLibrary(library, functions), name, inputs, target)
+    allowed = permitted(ExtendedLibrary(library, functions), name, inputs, chosen)
     return np.asarray(allowed.contains(value))
 
 
