@@ -33,6 +33,7 @@ class HalfForm:
     single    parameters that stay f32
     where     feature -> closed interval: inputs for which the errors hold, see codegen.bounds.Bound
     bounds    measured errors as bounds, each with its domain and origin
+    executed  largest errors seen on devices that compute in half precision: target, driver, error
     """
 
     function: str
@@ -41,6 +42,7 @@ class HalfForm:
     single: tuple[str, ...] = ()
     where: Mapping[str, tuple[float, float]] | None = None
     bounds: tuple[Bound, ...] = ()
+    executed: tuple[Mapping[str, Any], ...] = ()
 
     def as_data(self) -> dict[str, Any]:
         """For `vair list --json`."""
@@ -56,6 +58,7 @@ class HalfForm:
             ],
             "domain": self.bounds[0].domain if self.bounds else None,
             "origin": self.bounds[0].origin if self.bounds else None,
+            "executed": [dict(row) for row in self.executed],
         }
 
 
@@ -76,7 +79,6 @@ def _declared(root: Path) -> dict[str, Any]:
         raise UserError(f"{path.parent.name}/{RULES}: not valid TOML: {e}") from None
 
 
-@functools.cache
 def _measured(root: Path) -> dict[str, Any]:
     path = root / MEASURED
     if not path.exists():
@@ -115,21 +117,27 @@ def declared_constants(library: Library) -> dict[tuple[float, str], float]:
 @functools.cache
 def half_forms(library: Library) -> dict[str, HalfForm]:
     """What is known of each function's half form, by name."""
-    found = {}
-    for name, row in _measured(library.root).items():
-        if "refused" in row:
-            found[name] = HalfForm(name, row["refused"], row.get("instead", ""))
-            continue
-        where = {k: (float(low), float(high)) for k, (low, high) in row["where"].items()}
-        bounds = tuple(
-            Bound(
-                name, e["measure"], e["bound"], row["domain"], row["origin"], e.get("floor", 0.0), where,
-                e.get("field", ""),
-            )
-            for e in row["errors"]
-        )  # fmt: skip
-        found[name] = HalfForm(name, "", "", tuple(row.get("single", ())), where, bounds)
-    return found
+    return {name: form_of(name, row) for name, row in _measured(library.root).items()}
+
+
+def form_of(name: str, row: Mapping[str, Any]) -> HalfForm:
+    """A function's row of half.json."""
+    if "refused" in row:
+        return HalfForm(name, row["refused"], row.get("instead", ""))
+    where = {k: (float(low), float(high)) for k, (low, high) in row["where"].items()}
+    bounds = tuple(
+        Bound(
+            function=name,
+            measure=e["measure"],
+            bound=e["bound"],
+            domain=row["domain"],
+            origin=row["origin"],
+            floor=e.get("floor", 0.0),
+            where=where,
+        )
+        for e in row["errors"]
+    )
+    return HalfForm(name, "", "", tuple(row["single"]), where, bounds, tuple(row.get("executed", ())))
 
 
 def half_hash(library: Library, source_hash: str) -> str:

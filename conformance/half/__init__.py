@@ -1,0 +1,1 @@
+"""Half precision: how far the half form of each function errs, and where it is of use."""
