@@ -46,6 +46,7 @@ class Row:
 
 
 POWER = ("power_of_two a", "constant b")
+SCALED = ("varies x", "power_of_two a")
 CONSTANTS = ("constant a", "constant b")
 
 ROWS = (
@@ -64,6 +65,7 @@ ROWS = (
     Row("x * -1", "-x", "exact", "the product is representable"),
     Row("-x * -y", "x * y", "exact", "signs"),
     Row("x / 1", "x", "exact", "the quotient is representable, and every table permits it"),
+    Row("x / a", "x * (1 / a)", "exact", "the reciprocal of a power of two is one", SCALED),
     Row("0 / x", "0", "finite", "0 over a number that is not 0 is 0"),
     Row("x / x", "1", "finite", "the quotient is representable, and every table permits it", ("nonzero x",)),
     Row("a * (b * x)", "(a * b) * x", "exact", "a power of two moves no rounding of normal results", POWER),
@@ -152,6 +154,10 @@ def _constant(values: Values, ranges: Ranges, e: ir.Expr) -> bool:
     return constant_components(e) is not None
 
 
+def _varies(values: Values, ranges: Ranges, e: ir.Expr) -> bool:
+    return constant_components(e) is None
+
+
 def _unit(values: Values, ranges: Ranges, e: ir.Expr) -> bool:
     return is_unit(values, e)
 
@@ -167,6 +173,7 @@ def _above(values: Values, ranges: Ranges, a: ir.Expr, b: ir.Expr) -> bool:
 CONDITIONS: dict[str, Callable[..., bool]] = {
     "power_of_two": _power_of_two,
     "constant": _constant,
+    "varies": _varies,
     "unit": _unit,
     "nonzero": _nonzero,
     "above": _above,

@@ -1,7 +1,7 @@
 """Whole exponents: a call of a power with a constant whole exponent becomes multiplications.
 
 before   pow_one_minus(q, 16.0)
-after    r = max(1 - q, 0); r2 = r * r; r4 = r2 * r2; r8 = r4 * r4; r8 * r8
+after    r = max(1 - q, 0.0131); r2 = r * r; r4 = r2 * r2; r8 = r4 * r4; r8 * r8
 
 Not exact, so only by request: (1 - q) is rounded once, the exponent multiplies that error, and each product
 adds its own.
@@ -12,9 +12,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32
-from codegen.passes.values import Value, Values
+from codegen.passes.values import FIELD, Value, Values
 
 NAME = "powers"
 ROUNDING = 2.0**-23
@@ -34,21 +36,25 @@ class Row:
 
     argument: str
     exponent: str
-    base: Callable[[Values, ir.Expr], ir.Expr]
+    base: Callable[[Values, ir.Expr, float], ir.Expr]
     roundings: int
 
 
-def _zero(values: Values) -> ir.Expr:
-    return values.number(0.0, F32)
-
-
-def _one_minus(values: Values, q: ir.Expr) -> ir.Expr:
+def _one_minus(values: Values, q: ir.Expr, least: float) -> ir.Expr:
     left = values.binary("-", values.number(1.0, F32), q)
-    return values.build(ir.Builtin(F32, "max", (left, _zero(values))))
+    return values.build(ir.Builtin(F32, "max", (left, values.number(least, F32))))
 
 
-def _not_negative(values: Values, x: ir.Expr) -> ir.Expr:
-    return values.build(ir.Builtin(F32, "max", (x, _zero(values))))
+def _not_negative(values: Values, x: ir.Expr, least: float) -> ir.Expr:
+    return values.build(ir.Builtin(F32, "max", (x, values.number(least, F32))))
+
+
+def least_base(power: int) -> float:
+    """The least base of a power: the power is then 2^-100 at least, 0 to the eye but a normal number.
+
+    Numbers below 2^-126 take a CPU a hundred times as long as others.
+    """
+    return float(np.float32(2.0 ** (-100.0 / power))) if power > 1 else 0.0
 
 
 ROWS: Mapping[str, Row] = {
@@ -81,11 +87,11 @@ def whole_exponents(
         power = float(exponent.value)
         if power != int(power) or not 1 <= power <= largest:
             return None
-        made = _power(values, row.base(values, of), int(power))
+        made = _power(values, row.base(values, of, least_base(int(power))), int(power))
         values.note(
             NAME,
             f"{function.name}({values.show(of)}, {power:g}) -> {multiplications(int(power))} multiplications",
-            f"relative error at most {error(int(power), row.roundings):.2g} (either-way rounding)",
+            f"relative error at most {error(int(power), row.roundings):.2g} (either-way rounding), or 8e-31",
         )
         return made
 
@@ -99,12 +105,14 @@ def multiplications(power: int) -> int:
 
 def _power(values: Values, base: ir.Expr, power: int) -> ir.Expr:
     made: ir.Expr | None = None
-    square = base
+    square, reached = base, 1
+    values.hint(base, "base", FIELD)
     while True:
-        if power & 1:
+        if power & reached:
             made = square if made is None else values.binary("*", made, square)
-        power >>= 1
-        if not power:
+        reached *= 2
+        if reached > power:
             assert made is not None
             return made
         square = values.binary("*", square, square)
+        values.hint(square, f"power_{reached}", FIELD)

@@ -224,7 +224,10 @@ class _Table:
                 size = math.sqrt(product(self.owner.values, a, a)) * (1.0 + UNIT_SLACK)
             case _ if isinstance(e.type, Vector):
                 size = norm(self.owner.values, e)
-        return tuple(_cut(s, -size, size) for s in found) if math.isfinite(size) else found
+        if not math.isfinite(size):
+            return found
+        # What may overflow or be no number stays unbounded: a length says nothing of it.
+        return tuple(_cut(s, -size, size) if _is_bounded(s) else s for s in found)
 
 
 def _pending(e: ir.Expr, known: Mapping[int, object]) -> list[ir.Expr]:
@@ -245,6 +248,10 @@ def _pending(e: ir.Expr, known: Mapping[int, object]) -> list[ir.Expr]:
 
 def _is_float(type_: Type) -> bool:
     return type_ == F32 or (isinstance(type_, Vector) and type_.element == F32)
+
+
+def _is_bounded(s: Single) -> bool:
+    return not isinstance(s, Truth) and (s.cause is None or not (s.cause > 0).any())
 
 
 def _either(a: Single, b: Single) -> Single:

@@ -86,7 +86,7 @@ def check(name: str) -> None:
             columns = np.asarray(value, np.float64).reshape(LANES, -1).T
             for bound, column in zip(ranges.bounds(e), columns, strict=True):
                 narrow += bound.finite
-                outside = (column < bound.low) | (column > bound.high)
+                outside = ~((column >= bound.low) & (column <= bound.high))
                 assert not outside.any() or not bound.finite, (
                     f"{name}, {family}, seed {SEED}: {values.show(e)} = {column[outside][0]} outside {bound}"
                 )
