@@ -57,6 +57,8 @@ class Library:
         extended = Library.__new__(Library)
         extended.root, extended.resolver = self.root, self.resolver
         extended._added = {**self._added, **{f.name: f for f in functions}}
+        if "bounds" in self.__dict__:
+            extended.__dict__["bounds"] = self.bounds
         return extended
 
     @functools.cached_property

@@ -1,0 +1,53 @@
+"""`vair scene`: the minimal library for a scene, proven, with a report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+
+from codegen.backends import open_runtime
+from codegen.errors import UserError
+from codegen.library import load_library
+from codegen.scene.build import Builder
+from codegen.scene.document import read_scene
+from codegen.scene.markdown import as_markdown, summary
+from codegen.scene.report import as_data, as_json
+from codegen.scene.write import move_into
+
+NO_DRIVERS = "left out by --no-drivers"
+
+
+@click.command("scene")
+@click.argument("scene_file", metavar="SCENE.toml", type=click.Path(path_type=Path))
+@click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the files.")
+@click.option("--no-drivers", is_flag=True, help="Prove by the float32 evaluation only; no device is opened.")
+@click.option("--no-timing", is_flag=True, help="Leave the speed on the drivers out of the report.")
+def command(scene_file: Path, output: Path, no_drivers: bool, no_timing: bool) -> None:
+    """Write the minimal function for a scene, for each of its targets, with report.md and report.json."""
+    library = load_library()
+    scene = read_scene(scene_file, library)
+    if output.exists() and not output.is_dir():
+        raise UserError(f'cannot write to "{output}": it is a file')
+    runtimes: dict[str, Any] = {}
+    for target in scene.dialects:
+        runtimes[target] = NO_DRIVERS if no_drivers else _runtime(target)
+    progress = Console(stderr=True)
+    with progress.status("reading the scene") as status:
+        say = status.update if progress.is_terminal else lambda sentence: None
+        outcome = Builder(library, scene, runtimes, timed=not no_timing, say=say).build()
+    data = as_data(outcome)
+    files = {result.file: result.text for result in outcome.targets}
+    files |= {"report.md": as_markdown(data), "report.json": as_json(data)}
+    move_into(output, files)
+    click.echo(summary(data, output))
+
+
+def _runtime(target: str) -> Any:
+    """The runtime of a target, or the reason why there is none."""
+    try:
+        return open_runtime(target)
+    except UserError as e:
+        return str(e)

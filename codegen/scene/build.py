@@ -1,0 +1,260 @@
+"""A scene from its file to proven functions, one per target; nothing is written here."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from codegen.backends import dialect
+from codegen.errors import UserError
+from codegen.evaluate import evaluate
+from codegen.library import Library
+from codegen.passes.operations import operations
+from codegen.passes.specialise import specialise
+from codegen.scene import environment, spirv, stopwatch, text
+from codegen.scene.document import Scene
+from codegen.scene.environment import ConstantLight, MapError
+from codegen.scene.errors import MARGIN, Floats, Reference, as_floats
+from codegen.scene.general import General, general_function
+from codegen.scene.knowledge import Knowledge, knowledge, model_ranges
+from codegen.scene.points import SEED, Points, draw
+from codegen.scene.prices import Prices
+from codegen.scene.proof import Proof, prove
+from codegen.scene.reduce import Reduced, Reducer
+from codegen.scene.search import Search
+from codegen.scene.stopwatch import Speed
+
+SEARCH_POINTS = 20_000
+PROOF_POINTS = 100_000
+ENVIRONMENT_POINTS = 24
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Remaining:
+    """A parameter that is left, and the operations that would be left if it were constant."""
+
+    name: str
+    operations: int
+
+
+@dataclass
+class TargetResult:
+    """Everything about one target.
+
+    before, after   speed of the general function and of the result, where a driver was timed
+    exact_proof     the result of the exact passes alone against the general function
+    """
+
+    target: str
+    title: str
+    file: str
+    text: str
+    reduced: Reduced
+    operations: dict[str, dict[str, int]]
+    lines: dict[str, int]
+    exact_proof: Proof
+    proof: Proof
+    spirv: dict[str, int | None] = field(default_factory=dict)
+    speeds: dict[str, Speed] = field(default_factory=dict)
+    unavailable: str = ""
+
+
+@dataclass
+class Outcome:
+    """What `vair scene` found; `targets` in the order of the scene."""
+
+    scene: Scene
+    general: General
+    known: Knowledge
+    targets: list[TargetResult]
+    remaining: list[Remaining]
+    environment: MapError | None
+    constant_lights: tuple[ConstantLight, ...]
+    seconds: float
+    hard_points: int
+
+
+@dataclass
+class Builder:
+    """Builds one scene. `runtimes`: target -> runtime, or the reason why there is none."""
+
+    library: Library
+    scene: Scene
+    runtimes: Mapping[str, Any]
+    timed: bool = True
+    say: Progress = lambda sentence: None
+
+    def build(self) -> Outcome:
+        """Everything but the files; raises UserError where nothing may be written."""
+        begin = time.perf_counter()
+        constant, pixels = self.constant_lights()
+        general = general_function(self.scene, constant)
+        self.library.bounds  # noqa: B018  read once, for all libraries that extend this one
+        library = self.library.with_functions([general.function])
+        known = knowledge(self.scene, general)
+        self.say("searching")
+        points = draw(self.scene, general, SEARCH_POINTS)
+        reference = Reference.of(library, general.function.name, points)
+        search = Search(library, general, reference, model_ranges(self.scene, general))
+        reducer = Reducer(library, general, known, reference, search, self.scene.function)
+        reduced = {}
+        for target in self.scene.dialects:
+            self.say(f"searching for {target}")
+            reduced[target] = reducer.reduced(Prices.of(library, target), self.scene.budget)
+            self.check_budget(reduced[target])
+        if not reducer.exact().function.parameters:
+            raise UserError(
+                f"{self.scene.path}: nothing varies: the scene is one colour and needs no function"
+            )
+        proven = draw(self.scene, general, PROOF_POINTS, SEED + 1)
+        exact = as_floats(evaluate(library, general.function.name, proven.inputs, "float64"))
+        results = [self.target(library, general, r, proven, exact) for r in reduced.values()]
+        refused = [r for r in results if not self.holds(r)]
+        if refused:
+            raise UserError(self.refusal(refused[0]))
+        error = None
+        if pixels is not None:
+            self.say("measuring the map")
+            error = self.map_error(library, proven, list(constant), pixels)
+        return Outcome(
+            scene=self.scene,
+            general=general,
+            known=known,
+            targets=results,
+            remaining=self.remaining(library, general, known, next(iter(reduced.values()))),
+            environment=error,
+            constant_lights=tuple(constant),
+            seconds=time.perf_counter() - begin,
+            hard_points=int(proven.hard.sum()),
+        )
+
+    def constant_lights(self) -> tuple[list[ConstantLight], Floats | None]:
+        """The lights of the scene's map, and the map."""
+        lights = self.scene.lights
+        if lights.environment is None:
+            return [], None
+        self.say("reading the map")
+        pixels = environment.read_map(lights.environment, f"{self.scene.path}: [lights] environment")
+        return environment.median_cut(pixels, lights.environment_lights), pixels
+
+    def check_budget(self, reduced: Reduced) -> None:
+        """Refuse a budget that not even the exact passes meet."""
+        budget = self.scene.budget
+        if budget > 0.0 and reduced.error.largest * MARGIN > budget:
+            raise UserError(
+                f"{self.scene.path}: [scene] budget: no variant meets {budget:.3g}; the best achievable on "
+                f"{reduced.target} is {reduced.error.largest * MARGIN:.3g}, which rounding to float32 takes"
+            )
+
+    def target(
+        self, library: Library, general: General, reduced: Reduced, points: Points, exact: Floats
+    ) -> TargetResult:
+        """Proof, text and figures of one target."""
+        target = reduced.target
+        runtime = self.runtimes.get(target)
+        reason = runtime if isinstance(runtime, str) else ""
+        runtime = None if isinstance(runtime, str) else runtime
+        self.say(f"proving on {target}")
+        name = general.function.name
+
+        def proof(made: Any, budget: float) -> Proof:
+            extended = library.with_functions([made.function])
+            return prove(extended, name, made.function.name, points, exact, target, runtime, budget)
+
+        exact_proof = proof(reduced.exact, 0.0)
+        final_proof = proof(reduced.final, self.scene.budget) if reduced.changes else exact_proof
+        written = text.emitted(library, self.scene, general, reduced)
+        result = TargetResult(
+            target=target,
+            title=dialect(target, self.scene.dialects[target]).title,
+            file=text.file_name(self.scene, target),
+            text=written,
+            reduced=reduced,
+            operations={
+                "general": operations(general.function, library),
+                "exact": operations(reduced.exact.function),
+                "final": operations(reduced.final.function),
+            },
+            lines=text.line_counts(library, self.scene, general, reduced),
+            exact_proof=exact_proof,
+            proof=final_proof,
+            unavailable=reason,
+        )
+        if target == "glsl":
+            result.spirv = text.spirv_counts(library, self.scene, general, reduced, spirv.instructions)
+        if runtime is not None and self.timed and final_proof.holds(self.scene.budget):
+            self.say(f"timing on {target}")
+            extended = library.with_functions([reduced.final.function])
+            names = [name, reduced.final.function.name]
+            ordinary = {key: np.asarray(v)[~points.hard] for key, v in points.inputs.items()}
+            result.speeds = stopwatch.measure(extended, names, runtime, ordinary)
+        return result
+
+    def holds(self, result: TargetResult) -> bool:
+        """Whether both proofs of a target hold."""
+        budget = self.scene.budget if result.reduced.changes else 0.0
+        return result.exact_proof.holds(0.0) and result.proof.holds(budget)
+
+    def refusal(self, result: TargetResult) -> str:
+        """Why nothing is written: which proof failed, and the term that did it."""
+        proof, path = result.exact_proof, self.scene.path
+        if not proof.holds(0.0):
+            return (
+                f"{path}: nothing is written: on {proof.driver} the exact passes give {proof.outside} of "
+                f"{proof.judged} results outside what its specification permits, the first at "
+                f"{proof.first_outside}"
+            )
+        proof, changes = result.proof, result.reduced.changes
+        term = changes[-1].what if changes else "no term"
+        return (
+            f"{path}: nothing is written: on {proof.driver} the error is {proof.error.largest:.3g}, above "
+            f"the budget {self.scene.budget:.3g}; the last approximation was {term}"
+        )
+
+    def map_error(
+        self, library: Library, points: Points, lights: list[ConstantLight], pixels: Floats
+    ) -> MapError:
+        """The constant lights against the whole map, by the library's own model in float64."""
+        one = general_function(_lit_by_one(self.scene))
+        extended = library.with_functions([one.function])
+        light = one.lights[0].names
+        chosen = draw(_lit_by_one(self.scene), one, ENVIRONMENT_POINTS)
+
+        def shade(directions: Floats, colours: Floats, k: int) -> Floats:
+            inputs = {
+                name: np.broadcast_to(np.asarray(v)[k], (len(directions), *np.asarray(v).shape[1:]))
+                for name, v in chosen.inputs.items()
+            }
+            inputs |= {light["l"]: directions.astype(np.float32), light["light"]: colours.astype(np.float32)}
+            return as_floats(evaluate(extended, one.function.name, inputs, "float64"))
+
+        return environment.measured_error(pixels, lights, shade, ENVIRONMENT_POINTS)
+
+    def remaining(
+        self, library: Library, general: General, known: Knowledge, reduced: Reduced
+    ) -> list[Remaining]:
+        """What each parameter costs that is left: operations that go if it is constant, dearest first."""
+        f = reduced.final.function
+        extended = library.with_functions([f])
+        points = draw(self.scene, general, 64)
+        found = []
+        for p in f.parameters:
+            value = np.asarray(points.inputs[p.name])[7].tolist()
+            given = tuple(value) if isinstance(value, list) else value
+            made = specialise(extended, f.name, {p.name: given}, new_name="scene_probe")
+            found.append(Remaining(p.name, sum(operations(made.function).values())))
+        return sorted(found, key=lambda r: r.operations)
+
+
+def _lit_by_one(scene: Scene) -> Scene:
+    """The scene under a single directional light."""
+    from dataclasses import replace
+
+    lights = replace(scene.lights, directional=1, point=0, environment=None, colour=(0.0, 1.0))
+    return replace(scene, lights=lights)

@@ -1,0 +1,123 @@
+"""Terms that hardly matter: an expression is replaced by one number, or a choice by one of its sides.
+
+This covers what a dense coat hides, a factor that is nearly 1, a highlight that is nearly 0: whatever the
+scene's ranges leave so little room that nobody sees it. Each candidate is the middle of the values that the
+points give, or 0 or 1 where these are among them. A choice that only saves digits, or that the scene never
+takes, leaves one side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from codegen.evaluate.arrays import Value, arithmetic, convert_inputs
+from codegen.evaluate.interpreter import _Frame
+from codegen.ir import nodes as ir
+from codegen.ir.types import F32
+from codegen.library import Library
+
+MOST = 48
+"""Candidates that are tried in one function, those with the largest subtree first."""
+
+
+@dataclass(frozen=True)
+class Term:
+    """An expression, what may stand for it, and the values that it takes over the points."""
+
+    expression: ir.Expr
+    replacement: ir.Expr
+    low: float
+    high: float
+
+
+class _Recorder(_Frame):
+    """An evaluation that notes the extremes of every scalar."""
+
+    seen: dict[int, tuple[float, float]]
+
+    def expr(self, e: ir.Expr) -> Value:
+        value = super().expr(e)
+        if e.type == F32 and not isinstance(e, ir.Const | ir.Var) and isinstance(value, np.ndarray):
+            low, high = self.seen.get(id(e), (np.inf, -np.inf))
+            self.seen[id(e)] = min(low, float(value.min())), max(high, float(value.max()))
+        return value
+
+
+def terms(library: Library, function: ir.Function, inputs: Mapping[str, Value]) -> list[Term]:
+    """The candidates of a function without calls, those that stand for most operations first."""
+    chosen = arithmetic("float32")
+    arrays, count = convert_inputs(
+        {p.name: p.type for p in function.parameters}, inputs, chosen, function.name
+    )
+    frame = _Recorder(library.function, chosen, function, arrays, count)
+    frame.seen = {}
+    with np.errstate(all="ignore"):
+        frame.run()
+    definitions = {s.name: s.value for s in ir.statements(function.body) if isinstance(s, ir.Let)}
+    found: list[tuple[int, Term]] = []
+    seen: set[int] = set()
+    for e in ir.expressions(function.body):
+        ends = frame.seen.get(id(e))
+        if ends is None or not all(np.isfinite(ends)) or ends[0] == ends[1] == 0.0 or id(e) in seen:
+            continue
+        seen.add(id(e))
+        size = _size(e, definitions)
+        found += [(size, Term(e, ir.Const(F32, value), *ends)) for value in _numbers(*ends)]
+        if isinstance(e, ir.Select):
+            found += [(size, Term(e, side, *ends)) for side in (e.if_false, e.if_true)]
+    found.sort(key=lambda entry: -entry[0])
+    return [term for size, term in found if size > 1][:MOST]
+
+
+def _numbers(low: float, high: float) -> list[float]:
+    """0 and 1 where they are among the values, which simplifies more, and the middle."""
+    nice = [x for x in (0.0, 1.0) if low - 1e-6 <= x <= high + 1e-6]
+    return [*nice, float(np.float32(0.5 * (low + high)))]
+
+
+def _size(e: ir.Expr, definitions: Mapping[str, ir.Expr]) -> int:
+    """Operations below an expression, each local once."""
+    seen: set[str] = set()
+
+    def visit(x: ir.Expr) -> int:
+        total = int(isinstance(x, ir.Unary | ir.Binary | ir.Builtin | ir.Select))
+        for node in ir.walk(x):
+            if node is not x:
+                total += int(isinstance(node, ir.Unary | ir.Binary | ir.Builtin | ir.Select))
+            if isinstance(node, ir.Var) and node.name in definitions and node.name not in seen:
+                seen.add(node.name)
+                total += visit(definitions[node.name])
+        return total
+
+    return visit(e)
+
+
+def without(function: ir.Function, term: Term) -> ir.Function:
+    """The function with the replacement in the expression's place."""
+    target = term.expression
+
+    def visit(e: ir.Expr) -> ir.Expr:
+        if e is target:
+            return term.replacement
+        parts = ir.children(e)
+        made = tuple(map(visit, parts))
+        return ir.rebuild(e, made) if any(a is not b for a, b in zip(made, parts, strict=True)) else e
+
+    def block(body: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
+        made: list[ir.Stmt] = []
+        for s in body:
+            match s:
+                case ir.If():
+                    made.append(
+                        replace(s, condition=visit(s.condition), then=block(s.then), orelse=block(s.orelse))
+                    )
+                case ir.For():
+                    made.append(replace(s, body=block(s.body)))
+                case _:
+                    made.append(replace(s, value=visit(s.value)))
+        return tuple(made)
+
+    return replace(function, body=block(function.body))

@@ -1,0 +1,74 @@
+"""How far a function is from another over points: absolute, largest component."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.evaluate import evaluate
+from codegen.evaluate.arrays import Value
+from codegen.library import Library
+from codegen.scene.points import Inputs, Points
+
+Floats = npt.NDArray[np.float64]
+MARGIN = 1.15
+"""A predicted error has to fit the budget this many times: drivers round and approximate in their own ways,
+and points are not every input."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Largest and 99.9 % error over points, in absolute units, and the point of the largest."""
+
+    largest: float
+    p999: float
+    worst: int
+    finite: bool
+
+    def within(self, budget: float) -> bool:
+        """Whether it fits a budget as it is."""
+        return self.finite and self.largest <= budget
+
+
+def as_floats(value: Value) -> Floats:
+    """A scalar or vector result, (N, size), widened."""
+    assert not isinstance(value, dict)
+    a = np.asarray(value, np.float64)
+    return a[:, None] if a.ndim == 1 else a
+
+
+def distance(got: Floats, *references: Floats) -> Measured:
+    """The distance of results to the nearest of the references, lane by lane."""
+    finite = bool(np.isfinite(got).all())
+    with np.errstate(all="ignore"):
+        apart = np.min([np.abs(got - r).max(axis=1) for r in references], axis=0)
+    apart = np.where(np.isfinite(apart), apart, np.inf)
+    worst = int(np.argmax(apart))
+    return Measured(float(apart[worst]), float(np.quantile(apart, 0.999)), worst, finite)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The general function's values over points: in float64, and as float32 rounds it.
+
+    Where inputs are at a jump or at a cancellation the two differ; a result counts as right if it is near
+    either.
+    """
+
+    points: Points
+    exact: Floats
+    single: Floats
+
+    @staticmethod
+    def of(library: Library, name: str, points: Points) -> Reference:
+        """The reference of a function of the library."""
+        exact = as_floats(evaluate(library, name, points.inputs, "float64"))
+        single = as_floats(evaluate(library, name, points.inputs, "float32"))
+        return Reference(points, exact, single)
+
+    def error(self, library: Library, name: str, inputs: Inputs | None = None) -> Measured:
+        """How far another function is, evaluated in float32."""
+        given = self.points.inputs if inputs is None else inputs
+        return distance(as_floats(evaluate(library, name, given, "float32")), self.exact, self.single)

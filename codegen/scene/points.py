@@ -1,0 +1,265 @@
+"""Seeded inputs of a scene: random points of its ranges, and the cases that are known to be hard.
+
+Hard cases: directions 0 and 1e-7 to 1e-1 rad from +-t, both at once, near the cone of the highlight, at the
+edges of what [view] allows and at the horizon; ends of ranges, zeros and their neighbours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.errors import UserError
+from codegen.evaluate.arrays import Value
+from codegen.ir.domains import Interval, Length, Unit
+from codegen.ir.types import Vector
+from codegen.scene.document import Scene
+from codegen.scene.general import General
+from codegen.scene.model import LIGHT, Slot
+from codegen.scene.settings import Alias, Constant, Range
+
+SEED = 20_265
+HARD_SHARE = 0.5
+"""Share of the points that are hard in one way or more."""
+END_SHARE = 0.15
+"""Share of the values of a range that are one of its ends or their neighbours."""
+ANGLES = (0.0, *(10.0**-k for k in range(7, 0, -1)))
+"""Angles from the hair, in radians."""
+ROUNDS = 200
+POSITIONS = 10.0
+"""Shaded points lie within this distance of the origin per coordinate."""
+
+Floats = npt.NDArray[np.float64]
+Inputs = dict[str, Value]
+
+
+@dataclass(frozen=True)
+class Points:
+    """Inputs of the general function by parameter, each with `count` lanes; `hard` marks the hard ones."""
+
+    inputs: Inputs
+    count: int
+    hard: npt.NDArray[np.bool_]
+
+
+def draw(scene: Scene, general: General, count: int, seed: int = SEED) -> Points:
+    """Exactly `count` points; raises UserError where no directions fit the facts of [view]."""
+    generator = np.random.default_rng(seed)
+    parts: list[tuple[Inputs, npt.NDArray[np.bool_]]] = []
+    found = 0
+    for attempt in range(ROUNDS):
+        hard = generator.random(count) < HARD_SHARE
+        inputs = _Drawing(scene, general, generator, count, hard).inputs()
+        keep = np.flatnonzero(_fits(scene, general, inputs))[: count - found]
+        parts.append(({name: np.asarray(v)[keep] for name, v in inputs.items()}, hard[keep]))
+        found += len(keep)
+        if found >= count:
+            break
+        if attempt >= 8 and found == 0:
+            raise UserError(f"{scene.path}: [view] no directions were found that fit all facts together")
+    if found < count:
+        raise UserError(f"{scene.path}: [view] the facts leave too few directions to test: widen them")
+    joined = {name: np.concatenate([np.asarray(part[0][name]) for part in parts]) for name in parts[0][0]}
+    return Points(dict(joined), count, np.concatenate([part[1] for part in parts]))
+
+
+def _fits(scene: Scene, general: General, inputs: Inputs) -> npt.NDArray[np.bool_]:
+    """Which points obey the facts, as float32 sees them."""
+    names = _names(general)
+    keep = np.ones(len(next(iter(inputs.values()))), np.bool_)
+    for (a, b), (low, high) in scene.facts.items():
+        for x, y in _pairs(names, a, b):
+            first, second = _direction(inputs, general, x), _direction(inputs, general, y)
+            cosine = (first * second).sum(axis=1)
+            keep &= (cosine >= low) & (cosine <= high)
+    return keep
+
+
+def _direction(inputs: Inputs, general: General, name: str) -> Floats:
+    """A direction by parameter; that to a point light from its position."""
+    value = np.asarray(inputs[name], np.float64)
+    if not name.startswith("light_position"):
+        return value
+    offset = value - np.asarray(inputs["position"], np.float64)
+    return np.asarray(offset / np.linalg.norm(offset, axis=1)[:, None])
+
+
+def _names(general: General) -> dict[str, list[str]]:
+    """Direction of the model -> the parameters that hold it: one, or one per light."""
+    found = {path: [name] for path, name in general.shared.items()}
+    found[LIGHT] = [
+        light.names.get(LIGHT) or light.names["position"]
+        for light in general.lights
+        if light.kind != "constant"
+    ]
+    for light in general.lights:
+        for path, name in light.names.items():
+            if path not in (LIGHT, "position", "light"):
+                found.setdefault(path, []).append(name)
+    return found
+
+
+def _pairs(names: Mapping[str, list[str]], a: str, b: str) -> list[tuple[str, str]]:
+    return [(x, y) for x in names.get(a, []) for y in names.get(b, [])]
+
+
+class _Drawing:
+    """One batch of points, not yet held against the facts."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        general: General,
+        generator: np.random.Generator,
+        count: int,
+        hard: npt.NDArray[np.bool_],
+    ) -> None:
+        self.scene, self.general, self.random, self.count, self.hard = scene, general, generator, count, hard
+        self.known: dict[str, Floats] = {}
+
+    def inputs(self) -> Inputs:
+        by_path = {slot.path: slot for slot in self.general.slots.values()}
+        directions = [s for s in by_path.values() if isinstance(s.domain, Unit)]
+        order = {"n": 0, "t": 1, "v": 2}
+        for slot in sorted(directions, key=lambda s: order.get(s.path, 3)):
+            if slot.path == slot.name or slot.path in self.general.shared:
+                self.known[self.general.shared.get(slot.path, slot.name)] = self.direction(slot)
+        found: Inputs = {}
+        for name, slot in self.general.slots.items():
+            if isinstance(slot.domain, Unit):
+                if name not in self.known:
+                    self.known[name] = self.direction(slot)
+                found[name] = self.known[name].astype(np.float32)
+            elif slot.name == "position":
+                found[name] = self.random.uniform(-POSITIONS, POSITIONS, (self.count, 3)).astype(np.float32)
+            elif not name.startswith("light_position"):
+                found[name] = self.value(slot, name)
+        for name in self.general.slots:
+            if name.startswith("light_position"):
+                found[name] = self.light_position(np.asarray(found["position"], np.float64))
+        for name, slot in self.general.slots.items():
+            setting = self.scene.settings.get(slot.path)
+            if isinstance(setting, Alias) and setting.path in self.general.shared:
+                found[name] = found[self.general.shared[setting.path]]
+        return {name: found[name] for name in self.general.slots}
+
+    def light_position(self, position: Floats) -> npt.NDArray[np.float32]:
+        low, high = self.scene.lights.distance
+        distance = np.exp(self.random.uniform(np.log(low), np.log(high), self.count))
+        direction = self.toward("l")
+        return np.asarray(position + direction * distance[:, None], np.float32)
+
+    def direction(self, slot: Slot) -> Floats:
+        setting = self.scene.settings.get(slot.path)
+        if isinstance(setting, Constant):
+            return np.broadcast_to(np.asarray(setting.value), (self.count, 3))
+        return self.toward("l" if slot.path.startswith("l") and slot.path[1:2] in ("", "_") else slot.path)
+
+    def toward(self, path: str) -> Floats:
+        """Directions for a role: around the normal as the facts say, hard ones near the hair or its cone."""
+        facts, n = self.scene.facts, self.known.get("n")
+        pair = (min("n", path), max("n", path))
+        low, high = facts.get(pair, (-1.0, 1.0))
+        result = self.uniform()
+        if n is not None and path != "n":
+            cosine = self.random.uniform(low, high, self.count)
+            edge = self.hard & (self.random.random(self.count) < 0.25)
+            ends = self.random.choice([low, high, min(max(0.0, low), high)], self.count)
+            nearby = ends + 10.0 ** self.random.uniform(-7, -1, self.count) * self.random.choice(
+                [-1, 1], self.count
+            )
+            cosine = np.where(edge, np.clip(nearby, low, high), cosine)
+            result = _at_cosine(n, self.random, cosine)
+        hair = self.known.get("t", n)
+        if hair is None or path in ("n", "t"):
+            return result
+        near = self.hard & (self.random.random(self.count) < 0.3)
+        signs = self.random.choice([-1.0, 1.0], self.count)[:, None]
+        angles = self.random.choice(ANGLES, self.count) * self.random.choice([1.0, 0.3], self.count)
+        result = np.where(near[:, None], _tilted(signs * hair, self.random, angles), result)
+        viewer = self.known.get("v")
+        if path == "l" and viewer is not None:
+            cone = self.hard & ~near & (self.random.random(self.count) < 0.5)
+            offset = 10.0 ** self.random.uniform(-7, -0.5, self.count) * self.random.choice(
+                [-1, 1], self.count
+            )
+            cosine = np.clip(-(hair * viewer).sum(axis=1) + offset, -1.0, 1.0)
+            result = np.where(cone[:, None], _at_cosine(hair, self.random, cosine), result)
+        return result
+
+    def uniform(self) -> Floats:
+        found = self.random.normal(size=(self.count, 3))
+        return np.asarray(found / np.linalg.norm(found, axis=1)[:, None])
+
+    def value(self, slot: Slot, name: str) -> Value:
+        setting = self.scene.settings.get(slot.path)
+        shape = (self.count, slot.type.size) if isinstance(slot.type, Vector) else (self.count,)
+        if isinstance(setting, Constant):
+            given = np.asarray(setting.value)
+            return np.broadcast_to(given if len(shape) == 2 else given[0], shape).astype(_dtype(slot))
+        low, high, scale, least = _ends(slot, setting, self.scene)
+        spread: npt.NDArray[Any] = self.spread(low, high, scale, least, shape, slot)
+        return spread
+
+    def spread(
+        self, low: Floats, high: Floats, scale: str, least: float, shape: tuple[int, ...], slot: Slot
+    ) -> Any:
+        low, high = (np.broadcast_to(x if len(shape) == 2 else x[0], shape) for x in (low, high))
+        share = self.random.random(shape)
+        if scale == "log" and (low >= 0.0).all():
+            start = np.maximum(low, np.maximum(max(least, 1e-6), high * 1e-9))
+            values = np.exp(np.log(start) + share * (np.log(np.maximum(high, start)) - np.log(start)))
+        else:
+            values = low + share * (high - low)
+        ends = self.random.random(shape) < END_SHARE * self.hard.reshape(-1, *[1] * (len(shape) - 1)) * 2
+        first = self.random.random(shape) < 0.5
+        end = np.where(first, low, high).astype(np.float32)
+        inner = np.nextafter(end, np.where(first, high, low).astype(np.float32))
+        end = np.where(self.random.random(shape) < 0.5, end, inner)
+        rounded = np.clip(values.astype(np.float32), low.astype(np.float32), high.astype(np.float32))
+        found: npt.NDArray[Any] = np.where(ends, end, rounded).astype(_dtype(slot))
+        return found
+
+
+def _ends(slot: Slot, setting: Any, scene: Scene) -> tuple[Floats, Floats, str, float]:
+    """Ends per component, the scale to sample by, and where random points by magnitude start."""
+    size = slot.type.size if isinstance(slot.type, Vector) else 1
+    domain = slot.domain
+    scale, least = (domain.scale, domain.least) if isinstance(domain, Interval) else ("linear", 0.0)
+    if isinstance(setting, Range):
+        return np.array(setting.low), np.array(setting.high), scale, 0.0
+    if isinstance(domain, Interval):
+        return np.full(size, domain.low), np.full(size, domain.high), scale, least
+    reach = domain.high if isinstance(domain, Length) and domain.high <= 1e3 else 1.0
+    return np.full(size, -reach), np.full(size, reach), "linear", 0.0
+
+
+def _dtype(slot: Slot) -> type[np.generic]:
+    element = slot.type.element if isinstance(slot.type, Vector) else slot.type
+    table: dict[str, type[np.generic]] = {
+        "f32": np.float32,
+        "i32": np.int32,
+        "u32": np.uint32,
+        "bool": np.bool_,
+    }
+    return table[element.name]
+
+
+def _across(axis: Floats, generator: np.random.Generator) -> Floats:
+    """Unit vectors orthogonal to an axis, of any azimuth."""
+    other = generator.normal(size=axis.shape)
+    other -= (other * axis).sum(axis=1)[:, None] * axis
+    return np.asarray(other / np.linalg.norm(other, axis=1)[:, None])
+
+
+def _at_cosine(axis: Floats, generator: np.random.Generator, cosine: Floats) -> Floats:
+    sine = np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0))
+    return np.asarray(cosine[:, None] * axis + sine[:, None] * _across(axis, generator))
+
+
+def _tilted(axis: Floats, generator: np.random.Generator, angle: Floats) -> Floats:
+    return np.asarray(np.cos(angle)[:, None] * axis + np.sin(angle)[:, None] * _across(axis, generator))

@@ -1,0 +1,149 @@
+"""The proof: the specialised function is executed beside the general one before anything is written.
+
+Where nothing was approximated, each result that differs in any bit must lie in the interval that the target's
+specification permits for the general function; otherwise it must be within the budget of the general
+function's value. Both are computed by the driver that is asked; the NumPy float32 evaluation stands in where
+there is none.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.errors import UserError
+from codegen.evaluate import evaluate
+from codegen.evaluate.arrays import Value
+from codegen.execute import execute
+from codegen.intervals import DEFAULT_TABLES, permitted
+from codegen.library import Library
+from codegen.scene.errors import Floats, Measured, as_floats, distance
+from codegen.scene.points import Points
+
+JUDGED = 16_384
+"""Results that are judged by intervals, those farthest apart first; equal results need no judgement."""
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What one driver, or the evaluation in its place, found.
+
+    driver      the driver in words; "float32 evaluation" without one
+    executed    whether a driver computed it
+    points      inputs
+    error       distance of the specialised function from the general one, on that driver or in float64,
+                whichever is nearer
+    general     distance of the general function on that driver from float64: what rounding alone does
+    different   results that differ from the driver's own general function in any bit
+    judged      results judged by intervals; 0 where a budget was
+    outside     results outside their interval
+    seconds     how long both took, building included
+    """
+
+    target: str
+    driver: str
+    executed: bool
+    points: int
+    error: Measured
+    general: Measured
+    different: int
+    judged: int
+    outside: int
+    seconds: float
+    first_outside: str = ""
+
+    def holds(self, budget: float) -> bool:
+        """Whether the specialised function may be written."""
+        if budget == 0.0:
+            return self.error.finite and self.outside == 0
+        return self.error.within(budget)
+
+
+def prove(
+    library: Library,
+    general: str,
+    special: str,
+    points: Points,
+    exact: Floats,
+    target: str,
+    runtime: Any,
+    budget: float,
+) -> Proof:
+    """Execute both over the points.
+
+    library  holds both functions
+    exact    the general function's values in float64
+    runtime  of the target; None: the float32 evaluation
+    budget   largest absolute error; 0: by intervals
+    """
+    begin = time.perf_counter()
+    before = as_floats(_run(library, general, points.inputs, runtime))
+    own = {p.name: points.inputs[p.name] for p in library.function(special).parameters}
+    after = as_floats(_run(library, special, own, runtime, points.count))
+    seconds = time.perf_counter() - begin
+    different = (before != after).any(axis=1)
+    judged, outside, first = 0, 0, ""
+    if budget == 0.0:
+        judged, wrong = _judged(library, general, points, target, before, after, different)
+        outside = len(wrong)
+        first = _point(own, int(wrong[0])) if outside else ""
+    return Proof(
+        target=target,
+        driver=_driver(runtime),
+        executed=runtime is not None,
+        points=points.count,
+        error=distance(after, exact, before),
+        general=distance(before, exact),
+        different=int(different.sum()),
+        judged=judged,
+        outside=outside,
+        seconds=seconds,
+        first_outside=first,
+    )
+
+
+def _run(
+    library: Library, name: str, inputs: Mapping[str, Value], runtime: Any, count: int | None = None
+) -> Value:
+    if not inputs and count is not None:  # nothing varies: one value for all
+        raise UserError("every parameter is a constant: the scene has one colour, and needs no function")
+    if runtime is None:
+        return evaluate(library, name, inputs, "float32")
+    return execute(library, name, inputs, runtime)
+
+
+def _judged(
+    library: Library,
+    general: str,
+    points: Points,
+    target: str,
+    before: Floats,
+    after: Floats,
+    different: npt.NDArray[np.bool_],
+) -> tuple[int, npt.NDArray[np.intp]]:
+    """How many results were held against their interval, and the lanes outside."""
+    apart = np.abs(before - after).max(axis=1)
+    order = np.argsort(-np.where(different, apart, -1.0), kind="stable")
+    lanes = order[: min(int(different.sum()), JUDGED)]
+    if not len(lanes):
+        return 0, lanes
+    some = {name: np.asarray(v)[lanes] for name, v in points.inputs.items()}
+    allowed = permitted(library, general, some, DEFAULT_TABLES[target])
+    return len(lanes), lanes[~allowed.contains(after[lanes])]
+
+
+def _point(inputs: Mapping[str, Value], lane: int) -> str:
+    """One point's inputs, for a sentence."""
+    return ", ".join(f"{name} = {np.asarray(v)[lane].tolist()}" for name, v in inputs.items())
+
+
+def _driver(runtime: Any) -> str:
+    if runtime is None:
+        return "float32 evaluation"
+    device = runtime.device
+    return f"{device.device}; {device.driver}; {device.api}"

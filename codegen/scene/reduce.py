@@ -1,0 +1,261 @@
+"""From the general function of a scene to the one that is written, for one target.
+
+The exact passes come first and are kept as they are. With a budget, the cheaper forms follow, each only while
+the error of everything together, predicted over points, stays within it: whole exponents by multiplication,
+variants at call sites, looser forms of the geometry, numbers for terms that hardly vary.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from codegen.evaluate.arrays import Value
+from codegen.ir import nodes as ir
+from codegen.library import Library
+from codegen.passes.operations import operations
+from codegen.passes.powers import LARGEST, ROWS
+from codegen.passes.specialise import Specialised, specialise
+from codegen.passes.text import show
+from codegen.scene.drops import terms, without
+from codegen.scene.errors import MARGIN, Measured, Reference
+from codegen.scene.general import General
+from codegen.scene.knowledge import Knowledge
+from codegen.scene.loosen import BUNDLES, loosened
+from codegen.scene.points import Points
+from codegen.scene.prices import Prices
+from codegen.scene.search import Found, Search
+from codegen.scene.sites import Path
+
+SMALLEST_GAIN = 0.005
+"""Share of the price that a form has to save to be worth its error."""
+MOST_DROPS = 4
+SCREEN = 3000
+"""Points that a term is tried on before all of them are asked."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One approximation: what, why it is cheaper, and the predicted error of everything up to it.
+
+    kind  variant, power, form or term
+    """
+
+    kind: str
+    what: str
+    why: str
+    error: float
+    saving: str = ""
+    refused: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """What the search made of a scene for one target.
+
+    exact    after exact passes only
+    final    what is written; the same as exact where no approximation fits
+    changes  the approximations in order
+    error    predicted error of final, over the points of the search
+    log      the steps of the exact passes
+    """
+
+    target: str
+    exact: Specialised
+    final: Specialised
+    changes: tuple[Change, ...]
+    error: Measured
+    prices: str
+    choices: dict[Path, str] = field(default_factory=dict)
+
+
+@dataclass
+class Reducer:
+    """Reduces one scene; what does not depend on the target is done once."""
+
+    library: Library
+    general: General
+    knowledge: Knowledge
+    reference: Reference
+    search: Search
+    name: str
+    _made: dict[tuple[object, ...], Specialised] = field(default_factory=dict)
+    _cleaned: dict[tuple[ir.Stmt, ...], Specialised] = field(default_factory=dict)
+    _errors: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
+
+    def exact(self) -> Specialised:
+        """The function after exact passes only."""
+        return self.specialised({}, 0)
+
+    def specialised(self, choices: dict[Path, str], powers: int) -> Specialised:
+        """The general function with variants at call sites, specialised to what the scene knows."""
+        key = (tuple(sorted(choices.items())), powers)
+        if key not in self._made:
+            library, name = self.library, self.general.function.name
+            if choices:
+                functions = self.search.functions(choices, f"{self.general.function.name}_chosen")
+                library, name = library.with_functions(functions), functions[-1].name
+            known = self.knowledge
+            self._made[key] = specialise(
+                library,
+                name,
+                known.constants,
+                known.aliases,
+                known.ranges,
+                known.facts,
+                new_name=self.name,
+                powers=powers,
+            )
+        return self._made[key]
+
+    def reduced(self, prices: Prices, budget: float) -> Reduced:
+        """The cheapest function within the budget that the search finds for a target."""
+        exact = self.exact()
+        error = self.error(exact)
+        changes: list[Change] = []
+        current, choices = exact, {}
+        if budget > 0.0:
+            powers = self.powers(exact, budget, changes)
+            found = self.search.find(prices, budget, frozenset(ROWS) if powers else frozenset())
+            changes += _variants(found, prices)
+            choices = found.choices
+            current = self.specialised(choices, powers)
+            current = self.loosened(current, prices, budget, changes)
+            current = self.dropped(current, prices, budget, changes)
+            error = self.error(current)
+        return Reduced(prices.target, exact, current, tuple(changes), error, prices.source, choices)
+
+    def error(self, made: Specialised) -> Measured:
+        """The error of a specialised function over the points, evaluated in float32."""
+        body = made.function.body
+        if body not in self._errors:
+            library = self.library.with_functions([made.function])
+            self._errors[body] = self.reference.error(library, made.function.name, self.inputs(made))
+        return self._errors[body]
+
+    def inputs(self, made: Specialised) -> dict[str, Value]:
+        """The points as inputs of a specialised function."""
+        return {p.name: self.reference.points.inputs[p.name] for p in made.function.parameters}
+
+    def fits(self, made: Specialised, budget: float) -> Measured | None:
+        """The error of a function where the budget holds it."""
+        error = self.error(made)
+        return error if error.finite and error.largest * MARGIN <= budget else None
+
+    def powers(self, exact: Specialised, budget: float, changes: list[Change]) -> int:
+        """Whole exponents as multiplications, where there are any and the budget holds their error."""
+        made = self.specialised({}, LARGEST)
+        if made.function.body == exact.function.body:
+            return 0
+        error = self.fits(made, budget)
+        if error is None:
+            return 0
+        steps = [step for step in made.log if step.name == "powers"]
+        what = "; ".join(dict.fromkeys(step.what for step in steps))
+        changes.append(Change("power", what, "a constant whole exponent needs no logarithm", error.largest))
+        return LARGEST
+
+    def loosened(
+        self, made: Specialised, prices: Prices, budget: float, changes: list[Change]
+    ) -> Specialised:
+        """Forms that lose digits near the hair, where these digits are not needed."""
+        for bundle in BUNDLES:
+            function, names = made.function, []
+            for form in bundle:
+                looser = loosened(function, form)
+                if looser is not None:
+                    function = looser
+                    names.append(form)
+            if not names:
+                continue
+            candidate = self.cleaned(function)
+            before, after = prices.body(made.function), prices.body(candidate.function)
+            if after > (1.0 - SMALLEST_GAIN) * before:
+                continue
+            error = self.fits(candidate, budget)
+            if error is not None:
+                what = "; ".join(form.words for form in names)
+                changes.append(Change("form", what, _fewer(made, candidate), error.largest))
+                made = candidate
+        return made
+
+    def dropped(self, made: Specialised, prices: Prices, budget: float, changes: list[Change]) -> Specialised:
+        """Numbers for terms that hardly vary."""
+        for _ in range(MOST_DROPS):
+            step = self.drop(made, prices, budget)
+            if step is None:
+                break
+            made, change = step
+            changes.append(change)
+        return made
+
+    def drop(self, made: Specialised, prices: Prices, budget: float) -> tuple[Specialised, Change] | None:
+        points = self.reference.points
+        few = _first(points, SCREEN)
+        screen = Reference(few, self.reference.exact[:SCREEN], self.reference.single[:SCREEN])
+        given = {p.name: few.inputs[p.name] for p in made.function.parameters}
+        price = prices.body(made.function)
+        best: tuple[float, Specialised, Change] | None = None
+        for term in terms(self.library, made.function, given):
+            replaced = without(made.function, term)
+            library = self.library.with_functions([replaced])
+            if screen.error(library, replaced.name, given).largest * MARGIN > budget:
+                continue
+            candidate = self.cleaned(replaced)
+            gain = price - prices.body(candidate.function)
+            if gain <= SMALLEST_GAIN * price or (best is not None and gain <= best[0]):
+                continue
+            error = self.fits(candidate, budget)
+            if error is None:
+                continue
+            what = f"{_shown(made.function, term.expression)} -> {show(term.replacement)}"
+            why = f"it stays within [{term.low:.3g}, {term.high:.3g}]; {_fewer(made, candidate)}"
+            best = gain, candidate, Change("term", what, why, error.largest)
+        return None if best is None else (best[1], best[2])
+
+    def cleaned(self, function: ir.Function) -> Specialised:
+        """A changed function run through the exact passes again."""
+        if function.body not in self._cleaned:
+            self._cleaned[function.body] = self._clean(function)
+        return self._cleaned[function.body]
+
+    def _clean(self, function: ir.Function) -> Specialised:
+        library = self.library.with_functions([function])
+        names = {p.name for p in function.parameters}
+        facts = [f for f in self.knowledge.facts if all(n in names for n in _named(f[0]))]
+        return specialise(library, function.name, facts=facts, new_name=self.name)
+
+
+def _named(expression: str) -> list[str]:
+    return [part.strip() for part in expression.removeprefix("dot(").removesuffix(")").split(",")]
+
+
+def _first(points: Points, count: int) -> Points:
+    inputs = {name: value[:count] for name, value in points.inputs.items() if not isinstance(value, dict)}
+    return Points(dict(inputs), min(count, points.count), points.hard[:count])
+
+
+def _variants(found: Found, prices: Prices) -> Sequence[Change]:
+    return [
+        Change(
+            "variant",
+            f"{s.new} for {s.old} in {s.caller}",
+            "the cheapest whose domain covers the scene's ranges",
+            s.together,
+            f"{s.saving:.3g} {prices.unit}, {prices.source}",
+            s.refused,
+        )
+        for s in found.steps
+    ]
+
+
+def _fewer(before: Specialised, after: Specialised) -> str:
+    old, new = sum(operations(before.function).values()), sum(operations(after.function).values())
+    return f"{old} -> {new} operations"
+
+
+def _shown(function: ir.Function, e: ir.Expr) -> str:
+    for s in ir.statements(function.body):
+        if isinstance(s, ir.Let) and s.value is e:
+            return s.name
+    return show(e)

@@ -1,0 +1,209 @@
+"""Call sites: where a function's tree of calls may take a variant, and the function with variants taken.
+
+A site is a path of call numbers: (2, 0) is the first call inside what the third call of the root calls. Two
+calls of one function are two sites, since what is known of their arguments differs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from codegen.ir import nodes as ir
+from codegen.ir.domains import Interval
+from codegen.library import Library
+
+Path = tuple[int, ...]
+Choices = Mapping[Path, str]
+"""Site -> name of the function that is called there instead."""
+
+Known = dict[str, tuple[float, float]]
+"""Least and largest value of scalar parameters, where they are known."""
+
+
+@dataclass(frozen=True)
+class Site:
+    """One call, with what may stand in its place.
+
+    caller   function whose text holds the call, as the library names it
+    callee   what is called there now
+    options  variants whose domains cover what is known of the arguments
+    """
+
+    path: Path
+    caller: str
+    callee: str
+    options: tuple[str, ...]
+
+
+def sites(
+    library: Library,
+    root: ir.Function,
+    choices: Choices,
+    known: Known,
+    settled: frozenset[str] = frozenset(),
+) -> Iterator[Site]:
+    """Every call below the root with these choices made, in order.
+
+    settled  powers that become multiplications where their exponent is a constant whole number: no sites
+    """
+
+    def visit(f: ir.Function, path: Path, known: Known) -> Iterator[Site]:
+        definitions = {s.name: s.value for s in ir.statements(f.body) if isinstance(s, ir.Let)}
+        for k, call in enumerate(_calls(f)):
+            here = (*path, k)
+            callee = library.function(choices.get(here, call.function))
+            passed = _passed(callee, call, known, definitions)
+            written = library.function(call.function)
+            if callee.name in settled and _is_whole(callee, passed):
+                continue
+            options = tuple(
+                o for o in variants_of(library, written) if o != callee.name and _covers(library, o, passed)
+            )
+            if callee.name != written.name:
+                options = (written.name, *options)
+            yield Site(here, f.name, callee.name, options)
+            yield from visit(callee, here, passed)
+
+    yield from visit(root, (), known)
+
+
+def _is_whole(callee: ir.Function, passed: Known) -> bool:
+    """Whether the last parameter, the exponent of a power, is one whole number from 1 on."""
+    low, high = passed.get(callee.parameters[-1].name, (0.5, 0.5))
+    return low == high == int(low) and low >= 1.0
+
+
+def variants_of(library: Library, f: ir.Function) -> list[str]:
+    """Functions that may be called in this one's place: the base and its variants with equal parameters."""
+    base = f.base if f.kind == "variant" and f.base else f.name
+    module = library.resolver.module_of(base)
+    names = [n for n in library.resolver.function_names() if library.resolver.module_of(n) == module]
+    family = [library.function(n) for n in names]
+    shape = [(p.name, p.type) for p in f.parameters]
+    return [
+        g.name
+        for g in family
+        if (g.name == base or (g.base == base and g.kind == "variant"))
+        and g.name != f.name
+        and [(p.name, p.type) for p in g.parameters] == shape
+        and g.returns == f.returns
+    ]
+
+
+def _covers(library: Library, name: str, passed: Known) -> bool:
+    """Whether a function's domain holds the known range of each argument.
+
+    What is not known may be anything that the caller's own domain allows; a parameter that is narrower than
+    its base's is then refused.
+    """
+    f = library.function(name)
+    base = library.function(f.base) if f.base else f
+    for p in f.parameters:
+        if not isinstance(p.domain, Interval):
+            continue
+        wide = next((q.domain for q in base.parameters if q.name == p.name), None)
+        if p.name in passed:
+            low, high = passed[p.name]
+            if low < p.domain.low or high > p.domain.high:
+                return False
+        elif isinstance(wide, Interval) and (p.domain.low > wide.low or p.domain.high < wide.high):
+            return False
+    return True
+
+
+def _passed(callee: ir.Function, call: ir.Call, known: Known, definitions: Mapping[str, ir.Expr]) -> Known:
+    """What is known of a callee's scalar parameters and struct fields (as "parameter.field")."""
+    found: Known = {}
+    for p, a in zip(callee.parameters, call.args, strict=True):
+        for field, expression in _scalars(a, definitions):
+            bounds = _range(expression, known, definitions)
+            if bounds is not None:
+                found[f"{p.name}{field}"] = bounds
+        if isinstance(a, ir.Var) and a.name not in definitions:
+            prefix = a.name + "."
+            found |= {
+                p.name + "." + n.removeprefix(prefix): r for n, r in known.items() if n.startswith(prefix)
+            }
+    return found
+
+
+def _scalars(e: ir.Expr, definitions: Mapping[str, ir.Expr]) -> Iterator[tuple[str, ir.Expr]]:
+    """A scalar expression, or the fields of a constructed struct, by their path."""
+    if isinstance(e, ir.Var) and e.name in definitions:
+        e = definitions[e.name]
+    if isinstance(e, ir.Construct) and hasattr(e.type, "fields"):
+        for f, a in zip(e.type.fields, e.args, strict=True):
+            yield f".{f.name}", a
+    elif not hasattr(e.type, "fields"):
+        yield "", e
+
+
+def _range(e: ir.Expr, known: Known, definitions: Mapping[str, ir.Expr]) -> tuple[float, float] | None:
+    """The range of an expression that is a constant, a parameter, a field, or such a one times a constant."""
+    match e:
+        case ir.Const():
+            return (float(e.value), float(e.value))
+        case ir.Var():
+            if e.name in known:
+                return known[e.name]
+            return _range(definitions[e.name], known, definitions) if e.name in definitions else None
+        case ir.Member() if isinstance(e.value, ir.Var):
+            return known.get(f"{e.value.name}.{e.name}")
+        case ir.Binary(op="*"):
+            a, b = _range(e.left, known, definitions), _range(e.right, known, definitions)
+            if a is None or b is None:
+                return None
+            ends = [x * y for x in a for y in b]
+            return min(ends), max(ends)
+        case _:
+            return None
+
+
+def _calls(f: ir.Function) -> list[ir.Call]:
+    """The calls of a function in the order in which `_with_calls` meets them."""
+    found: list[ir.Call] = []
+
+    def note(e: ir.Expr) -> ir.Expr:
+        if isinstance(e, ir.Call):
+            found.append(e)
+        return e
+
+    ir.map_body(f.body, note)
+    return found
+
+
+def substituted(library: Library, root: ir.Function, choices: Choices, name: str) -> list[ir.Function]:
+    """The root under another name with the choices made, after copies of what lies between."""
+    made: list[ir.Function] = []
+
+    def visit(f: ir.Function, path: Path, new_name: str) -> None:
+        changed = {p[len(path)] for p in choices if p[: len(path)] == path and len(p) > len(path)}
+        names: dict[int, str] = {}
+        for k, call in enumerate(_calls(f)):
+            if k not in changed:
+                continue
+            here = (*path, k)
+            callee = choices.get(here, call.function)
+            below = any(p[: len(here)] == here and len(p) > len(here) for p in choices)
+            names[k] = callee
+            if below:
+                names[k] = f"{callee}_at_{'_'.join(map(str, here))}"
+                visit(library.function(callee), here, names[k])
+        made.append(replace(f, name=new_name, kind="helper", base=None, body=_with_calls(f, names)))
+
+    visit(root, (), name)
+    return made
+
+
+def _with_calls(f: ir.Function, names: Mapping[int, str]) -> tuple[ir.Stmt, ...]:
+    number = -1
+
+    def change(e: ir.Expr) -> ir.Expr:
+        nonlocal number
+        if not isinstance(e, ir.Call):
+            return e
+        number += 1
+        return replace(e, function=names[number]) if number in names else e
+
+    return ir.map_body(f.body, change)

@@ -1,0 +1,197 @@
+"""Speed of functions beside each other on one driver: interleaved, net of loop and inputs, one process.
+
+As `./dev bench` measures, in short form, because functions of a scene have parameters of their own: each lane
+loads inputs once; eps times the last sum, with eps read at run time and 0, is added to every input, so that
+nothing can be hoisted or shared; independent chains stand side by side. The same kernel with the sum of the
+inputs in the function's place is the baseline of each. Rounds run forwards and backwards (A B B A), and the
+median over the rounds counts. Software drivers are timed by the CPU time of this process, hardware by the
+wall.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from codegen.backends import complete_program, dialect
+from codegen.emit.module import DEFAULT_PREFIX, emit
+from codegen.emit.stmt import StmtPrinter
+from codegen.evaluate.arrays import Value
+from codegen.execute import Words, flatten
+from codegen.ir import nodes as ir
+from codegen.ir.types import F32, I32, Scalar, Type, Vector, leaves
+from codegen.library import Library
+
+SOFTWARE = ("llvmpipe", "lavapipe", "softpipe", "swiftshader", "pocl", "portable computing", "pthread", "cpu")
+CHAINS = 4
+LANES, FLAT_LANES = 512, 1 << 14
+LAUNCH_SECONDS = 4e-3
+MOST_STEPS = 1 << 14
+ROUNDS = 9
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Nanoseconds of one evaluation above its baseline: median and quartiles; seconds that building took."""
+
+    ns: float
+    low: float
+    high: float
+    build_seconds: float
+
+
+def measure(
+    library: Library, names: Sequence[str], runtime: Any, inputs: Mapping[str, Value], rounds: int = ROUNDS
+) -> dict[str, Speed]:
+    """The speeds of functions that take float inputs only, side by side.
+
+    inputs  values for every parameter that one of them has, by name; no hard cases: a number below 2^-126
+            takes a CPU a hundred times as long as others and would hide everything else
+    """
+    target = runtime.device.target
+    looped = target != "opencl"  # a loop keeps OpenCL compilers from working on several items at once
+    lanes = LANES if looped else FLAT_LANES
+    texts, given, built = {}, {}, {}
+    for name in names:
+        f = library.function(name)
+        words = _words(f, inputs, lanes)
+        for key, text in ((name, _kernel(library, f, target, looped, True)), (f"{name}:", "")):
+            texts[key] = text or _kernel(library, f, target, looped, False)
+            given[key] = words
+    for name in names:
+        begin = time.perf_counter()
+        runtime.prepare(texts[name], _with_steps(given[name], 1), 1).release()
+        built[name] = time.perf_counter() - begin
+    clock = time.process_time if _is_software(runtime) else time.perf_counter
+    steps = _steps(runtime, texts[names[0]], given[names[0]], clock) if looped else 1
+    ready = {key: runtime.prepare(texts[key], _with_steps(given[key], steps), 1) for key in texts}
+    try:
+        times = _rounds(ready, clock, rounds)
+    finally:
+        for one in ready.values():
+            one.release()
+    scale = 1e9 / (2 * lanes * CHAINS * steps)
+    found = {}
+    for name in names:
+        net = [(a - b) * scale for a, b in zip(times[name], times[f"{name}:"], strict=True)]
+        low, median, high = np.quantile(net, (0.25, 0.5, 0.75))
+        found[name] = Speed(float(median), float(low), float(high), built[name])
+    return found
+
+
+def _is_software(runtime: Any) -> bool:
+    device = runtime.device
+    text = f"{device.api} {device.driver} {device.device}".lower()
+    return any(word in text for word in SOFTWARE)
+
+
+def _rounds(ready: Mapping[str, Any], clock: Any, rounds: int) -> dict[str, list[float]]:
+    times: dict[str, list[float]] = {key: [] for key in ready}
+    for one in ready.values():
+        one.launch()
+        one.launch()
+    order = list(ready)
+    for _ in range(rounds):
+        sums = dict.fromkeys(order, 0.0)
+        for key in (*order, *reversed(order)):
+            begin = clock()
+            ready[key].launch()
+            sums[key] += clock() - begin
+        for key, total in sums.items():
+            times[key].append(total)
+        order.append(order.pop(0))
+    return times
+
+
+def _steps(runtime: Any, text: str, words: Words, clock: Any) -> int:
+    steps = 1
+    while steps < MOST_STEPS:
+        ready = runtime.prepare(text, _with_steps(words, steps), 1)
+        ready.launch()
+        begin = clock()
+        ready.launch()
+        taken = clock() - begin
+        ready.release()
+        if taken >= LAUNCH_SECONDS:
+            break
+        steps *= 4
+    return steps
+
+
+def _words(f: ir.Function, inputs: Mapping[str, Value], lanes: int) -> Words:
+    parts: list[Value] = []
+    for p in f.parameters:
+        value = inputs[p.name]
+        assert not isinstance(value, dict)
+        repeats = -(-lanes // len(value))
+        parts.append(np.tile(value, (repeats, 1) if value.ndim == 2 else repeats)[:lanes])
+    return flatten(parts, lanes)
+
+
+def _with_steps(words: Words, steps: int) -> Words:
+    controls = np.zeros((2, words.shape[1]), np.uint32)
+    controls[1] = steps
+    return np.concatenate([words, controls])
+
+
+def _kernel(library: Library, f: ir.Function, target: str, looped: bool, call: bool) -> str:
+    chosen = dialect(target)
+    printer = StmtPrinter(chosen)
+    scalars = [s for p in f.parameters for _, s in leaves(p.type)]
+    start: list[ir.Stmt] = [ir.Let(f"word_{k}", _load(s, k)) for k, s in enumerate(scalars)]
+    start += [ir.Let("epsilon", _load(F32, len(scalars))), ir.Let("step_count", _load(I32, len(scalars) + 1))]
+    sums = [f"sum_{c}" for c in range(CHAINS)]
+    start += [ir.Let(s, ir.Const(F32, 0.125 * c), mutable=True) for c, s in enumerate(sums)]
+    step: list[ir.Stmt] = []
+    for c, name in enumerate(sums):
+        step += _evaluation(f, c, name, call)
+    lines = printer.block(tuple(start), "    ")
+    if looped:
+        counter = "var step_index" if chosen.declaration == "name: type" else "int step_index"
+        lines.append(f"    for ({counter} = 0; step_index < step_count; step_index++) {{")
+        lines += [*printer.block(tuple(step), "        "), "    }"]
+    else:
+        lines += printer.block(tuple(step), "    ")
+    total = _sum([ir.Var(F32, s) for s in sums])
+    lines.append(f"    store_f32(0, {printer.expr.show(total)});")
+    text = emit(library, chosen, [f.name]) if call else ""
+    return complete_program(target, text, "\n".join(lines))
+
+
+def _evaluation(f: ir.Function, chain: int, state: str, call: bool) -> Iterator[ir.Stmt]:
+    moved: list[ir.Expr] = []
+    delta = ir.Var(F32, f"delta_{chain}")
+    yield ir.Let(delta.name, ir.Binary(F32, "*", ir.Var(F32, "epsilon"), ir.Var(F32, state)))
+    for k, scalar in enumerate(s for p in f.parameters for _, s in leaves(p.type)):
+        moved.append(ir.Binary(F32, "+", ir.Var(scalar, f"word_{k}"), delta))
+    if not call:
+        yield ir.Assign(state, _sum(moved))
+        return
+    supply = iter(moved)
+    arguments = tuple(_built(p.type, supply) for p in f.parameters)
+    result = ir.Var(f.returns, f"value_{chain}")
+    yield ir.Let(result.name, ir.Call(f.returns, DEFAULT_PREFIX + f.name, arguments))
+    assert isinstance(f.returns, Vector)
+    yield ir.Assign(state, _sum([ir.Swizzle(F32, result, c) for c in "xyzw"[: f.returns.size]]))
+
+
+def _built(type_: Type, supply: Iterator[ir.Expr]) -> ir.Expr:
+    if isinstance(type_, Scalar):
+        return next(supply)
+    assert isinstance(type_, Vector)
+    return ir.Construct(type_, tuple(next(supply) for _ in range(type_.size)))
+
+
+def _load(scalar: Scalar, slot: int) -> ir.Expr:
+    return ir.Call(scalar, f"load_{scalar.name}", (ir.Const(I32, slot),))
+
+
+def _sum(parts: Sequence[ir.Expr]) -> ir.Expr:
+    total = parts[0]
+    for part in parts[1:]:
+        total = ir.Binary(F32, "+", total, part)
+    return total
