@@ -1,8 +1,9 @@
 """Sums and products with their constant moved inwards, as compilers do it.
 
-Mesa 22.3.6 turns (a + b) + c with a constant c into (a + c) + b, and the same for products. WGSL, Vulkan and
-GLSL without `precise` allow rearrangement; the accuracy tables judge expressions as written. A result that
-only this explains is counted as rearranged, and is no failure.
+Mesa 22.3.6 turns (a + b) + c with a constant c into (a + c) + b, and the same for products; it does so across
+locals and the turns of a loop (conformance.programs.chains). WGSL, Vulkan and GLSL without `precise` allow
+rearrangement; the accuracy tables judge expressions as written. A result that only this explains is counted
+as rearranged, and is no failure.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from codegen.intervals import DEFAULT_TABLES, permitted
 from codegen.ir import nodes as ir
 from codegen.ir.types import Vector
 from codegen.library import Library
+from conformance.programs.chains import chained, straightened
 from conformance.programs.extended import ExtendedLibrary
 
 REARRANGING = frozenset({"glsl", "glsl_es", "vulkan", "wgsl", "opencl_relaxed"})
@@ -36,8 +38,16 @@ def explained(
     if chosen not in REARRANGING:
         return np.zeros(1, np.bool_)
     functions = {f.name: _rearranged(f) for f in library.select([name]).functions}
-    allowed = permitted(ExtendedLibrary(library, functions), name, inputs, chosen)
-    return np.asarray(allowed.contains(value))
+    found = np.asarray(permitted(ExtendedLibrary(library, functions), name, inputs, chosen).contains(value))
+    if found.all():
+        return found
+    straight = straightened(library, name)
+    arguments = straight.arguments(inputs) if straight.parameters else {}
+    for constants_first in (False, True):
+        made = chained(straight.function, library, constants_first)
+        allowed = permitted(ExtendedLibrary(library, {name: made}), name, arguments, chosen)
+        found = found | allowed.contains(value)
+    return found
 
 
 def _rearranged(function: ir.Function) -> ir.Function:

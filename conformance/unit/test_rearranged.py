@@ -1,0 +1,104 @@
+"""Results that only rearranged sums explain, results that nothing explains, and programs made of chains.
+
+The sum across a loop and a vector is that of random program 1032 of seed 9, as Mesa 22.3.6 computes it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from codegen.evaluate import evaluate
+from codegen.intervals import permitted
+from codegen.ir import nodes as ir
+from conformance.fuzz.case import draw_inputs, make_case
+from conformance.fuzz.source import write
+from conformance.metamorphic.pairs import columns
+from conformance.programs.chains import chained, straightened
+from conformance.programs.extended import ExtendedLibrary
+from conformance.programs.rearranged import explained
+from conformance.unit.support.sources import library_of
+
+LOOP = """def probe(x: X) -> vec2:
+    y = x
+    for k in range(3):
+        y = y + 3.0
+    return -(vec2(0.001) - vec2(2.75, y))
+"""
+PRODUCT = """@helper
+def scaled(x: X) -> f32:
+    return x * 0.1
+
+def probe(x: X, y: X) -> f32:
+    s = -scaled(x)
+    return s * 0.3 * y * 0.7
+"""
+SAME = 1e-6
+"""How far chains may differ in float64 from what they were made of, relative to 1 + |value|: sums cancel."""
+
+
+def in_one_sum(x: np.ndarray) -> np.ndarray:
+    """2.75 - 0.001, and x + (9 - 0.001), every operation rounded."""
+    first = np.full(len(x), np.float32(2.75) - np.float32(0.001), np.float32)
+    return np.stack([first, x + (np.float32(9.0) - np.float32(0.001))], axis=-1)
+
+
+@pytest.mark.parametrize("table", ["glsl", "wgsl"])
+def test_a_sum_through_a_loop_is_explained(table: str, tmp_path: Path) -> None:
+    library = library_of(tmp_path, LOOP)
+    inputs = {"x": np.linspace(-9.01, -8.99, 50, dtype=np.float32)}
+    got = in_one_sum(inputs["x"])
+    assert not permitted(library, "probe", inputs, table).contains(got).any(), "this needs no explanation"
+    assert explained(library, "probe", inputs, "", got, table).all()
+
+
+def test_wrong_results_are_not_explained(tmp_path: Path) -> None:
+    library = library_of(tmp_path, LOOP)
+    inputs = {"x": np.linspace(1.0, 3.0, 50, dtype=np.float32)}
+    got = in_one_sum(inputs["x"]) * np.float32(1.0 + 2e-6)
+    assert not explained(library, "probe", inputs, "", got, "glsl").any()
+
+
+def test_a_specification_that_keeps_the_order_explains_nothing(tmp_path: Path) -> None:
+    library = library_of(tmp_path, LOOP)
+    inputs = {"x": np.linspace(-9.01, -8.99, 50, dtype=np.float32)}
+    assert not explained(library, "probe", inputs, "", in_one_sum(inputs["x"]), "opencl").any()
+
+
+@pytest.mark.parametrize("constants_first", [False, True])
+def test_constants_of_a_product_come_together(constants_first: bool, tmp_path: Path) -> None:
+    library = library_of(tmp_path, PRODUCT)
+    made = chained(straightened(library, "probe").function, library, constants_first)
+    (constants,) = [
+        e
+        for e in ir.expressions(made.body)
+        if isinstance(e, ir.Binary) and isinstance(e.left, ir.Binary) and _of_constants(e)
+    ]
+    assert [round(c.value, 3) for c in ir.walk(constants) if isinstance(c, ir.Const)] == [0.1, 0.3, 0.7]
+
+
+def _of_constants(e: ir.Expr) -> bool:
+    return all(isinstance(part, ir.Const | ir.Binary | ir.Unary) for part in ir.walk(e))
+
+
+@pytest.mark.parametrize("constants_first", [False, True])
+def test_chains_mean_what_they_were_made_of(constants_first: bool, tmp_path: Path) -> None:
+    cases = [make_case(5, number) for number in range(24)]
+    library = write(tmp_path, cases)
+    changed = 0
+    for case in cases:
+        straight = straightened(library, case.entry)
+        made = chained(straight.function, library, constants_first)
+        changed += made.body != straight.function.body
+        inputs = draw_inputs(case, library.function(case.entry).parameters, 32)
+        wanted = evaluate(library, case.entry, inputs, "float64")
+        got = evaluate(
+            ExtendedLibrary(library, {case.entry: made}), case.entry, straight.arguments(inputs), "float64"
+        )
+        for a, b in zip(columns(wanted), columns(got), strict=True):
+            near = np.abs(a.astype(np.float64) - b) <= SAME * (1.0 + np.abs(a.astype(np.float64)))
+            # Where a comparison or a conversion turns on the last bit, a few lanes may go the other way.
+            assert near.mean() > 0.9, case.text
+    assert changed > 3
