@@ -1,0 +1,95 @@
+"""What is computed once for all backends: shared in memory, between processes, and a few functions ahead.
+
+Plan.
+  prepared  the reference and the intervals of all lanes are those of direct calls, and are computed once
+  shared    a second process reads what the first one computed; nothing half-written is ever seen
+  ahead     functions come in order, prepared in another process, with the same values
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from codegen.intervals import permitted
+from codegen.library import load_library
+from conformance.check import ahead, prepared
+from conformance.check.ahead import prepared_ahead
+from conformance.check.draws import draws
+from conformance.check.prepared import find_reference, has_reference, prepare, shared
+from conformance.reference import ambiguous
+
+NAME = "half_vector"
+
+
+def small(name: str = NAME) -> Any:
+    return list(draws(load_library().function(name), 300, 40))
+
+
+def test_prepared_values_are_those_of_direct_calls() -> None:
+    library = load_library()
+    ready = prepare(library, NAME, small())
+    inputs = ready.sample.inputs
+    reference = find_reference(library, library.function(NAME))
+    assert reference is not None
+    wanted = reference(*(v.astype(np.float64) for v in inputs.values()))
+    assert np.array_equal(ready.truth.expected, wanted)
+    assert np.array_equal(ready.truth.doubtful, ambiguous(NAME, inputs))
+    allowed = permitted(library, NAME, inputs, "glsl")
+    assert np.array_equal(ready.permitted("glsl").low, allowed.low)
+    assert not np.array_equal(ready.permitted("opencl").high, allowed.high)
+    assert ready.permitted("glsl") is ready.permitted("glsl")
+    assert ready.truth is ready.truth
+
+
+def test_printed_form_has_a_reference_of_its_own_or_none() -> None:
+    library = load_library()
+    assert all(has_reference(library, name) for name in library.public)
+
+
+@pytest.mark.parametrize("name", [NAME, "sin_angle"])
+def test_other_process_reads_what_the_first_one_left(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    library = load_library()
+    first = prepare(library, name, small(name), tmp_path)
+    expected, low = first.truth.expected, first.permitted("wgsl").low
+    monkeypatch.setattr(prepared, "expected_of", lambda *_: pytest.fail("computed again"))
+    monkeypatch.setattr(prepared, "permitted", lambda *_: pytest.fail("computed again"))
+    second = prepare(library, name, small(name), tmp_path)
+    assert np.array_equal(second.truth.expected, expected)
+    assert np.array_equal(second.permitted("wgsl").low, low)
+    other = prepare(library, name, small(name)[:1], tmp_path)
+    with pytest.raises(pytest.fail.Exception):
+        _ = other.truth
+    assert {p.suffix for p in tmp_path.iterdir()} == {".pickle", ".lock"}
+
+
+def test_nothing_half_written_is_shared(tmp_path: Path) -> None:
+    path = tmp_path / "value.pickle"
+
+    def interrupted() -> Any:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        shared(path, interrupted)
+    assert not path.exists()
+    assert shared(path, lambda: 7) == 7
+    assert shared(path, lambda: 8) == 7
+
+
+@pytest.mark.parametrize("worthwhile", [1, 99], ids=["in another process", "here"])
+def test_functions_come_in_order_whoever_prepares_them(
+    worthwhile: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ahead, "WORTHWHILE", worthwhile)
+    names = ["safe_sqrt", "unit_float"]
+    library = load_library()
+    for (name, ready), wanted in zip(prepared_ahead(library, names, ["glsl"]), names, strict=True):
+        assert (name, ready.name) == (wanted, wanted)
+        plain = prepare(library, name)
+        assert np.array_equal(ready.truth.expected, plain.truth.expected)
+        assert np.array_equal(ready.permitted("glsl").low, plain.permitted("glsl").low)
