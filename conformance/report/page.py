@@ -33,7 +33,7 @@ def page(library: Library, report: Mapping[str, Any]) -> str:
     return environment.get_template("report.html.j2").render(
         report=report,
         view=shown,
-        rows=[(g, e, shown["drivers"][e["driver"]]) for g in shown["groups"] for e in g["entries"]],
+        rows=[(g, e) for g in shown["groups"] for e in g["entries"]],
         kinds=KINDS,
         modes=MODES,
         expected=EXPECTED,

@@ -9,6 +9,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.transforms import Bbox
 
 from conformance.report.model import HALF_STEP, error_in, label
 
@@ -17,6 +18,10 @@ INK, SOFT, LINE, ACCENT, OTHER = "#1d1c1a", "#5f5d58", "#dedcd5", "#2563b8", "#b
 EXACT = 1e-6
 """Where results without any error are drawn."""
 PANEL_INCHES, HEIGHT_INCHES, DOTS_PER_INCH = 3.7, 3.9, 200
+MARK = 4.0
+"""Half the width of a mark, in pixels of the layout."""
+NEAR = 5.0
+"""From a mark to its name, in points."""
 NAMED = 5
 """Variants per panel that bear their names: those that gain most without leaving half a step."""
 
@@ -27,6 +32,11 @@ def overview(report: Mapping[str, Any]) -> bytes:
     with_points = [(label(r), points(r)) for r in results]
     figure = Figure(figsize=(max(PANEL_INCHES * len(results), 4.5), HEIGHT_INCHES), layout="constrained")
     panels = figure.subplots(1, len(results), sharex=True, sharey=True, squeeze=False)[0]
+    every = [(x, y) for _, found in with_points for _, _, x, y in found]
+    for axes in panels[:1]:  # all panels share its scales
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.scatter([x for x, _ in every], [y for _, y in every], alpha=0.0)
     for axes, (title, found) in zip(panels, with_points, strict=True):
         _panel(axes, title, found)
     panels[0].set_ylabel("largest error in 8-bit steps", color=SOFT)
@@ -49,8 +59,6 @@ def points(result: Mapping[str, Any]) -> list[tuple[str, str, float, float]]:
 
 def _panel(axes: Axes, title: str, found: list[tuple[str, str, float, float]]) -> None:
     axes.set_title(title, loc="left", fontsize=10.5, color=INK, fontweight="bold")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     for side in ("left", "bottom"):
@@ -77,7 +85,33 @@ def _panel(axes: Axes, title: str, found: list[tuple[str, str, float, float]]) -
     axes.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
     gain = sorted((x, name, y) for name, kind, x, y in found if kind == "variant" and y <= HALF_STEP)
-    for x, name, y in gain[:NAMED]:
-        axes.annotate(
-            name, (x, y), xytext=(5, 0), textcoords="offset points", fontsize=6.5, color=INK, va="center"
-        )
+    _name(axes, [(name, x, y) for x, name, y in gain], [(x, y) for _, _, x, y in found])
+
+
+def _name(axes: Axes, chosen: list[tuple[str, float, float]], marks: list[tuple[float, float]]) -> None:
+    """Names beside the first of the chosen points, where they cover no mark, no other name and no edge."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()
+    dots: Any = axes.transData.transform(marks) if marks else []
+    taken: list[Bbox] = [Bbox.from_bounds(x - MARK, y - MARK, 2 * MARK, 2 * MARK) for x, y in dots]
+    named = 0
+    for name, x, y in chosen:
+        for place, side in ((NEAR, "left"), (-NEAR, "right")):
+            text = axes.annotate(
+                name,
+                (x, y),
+                xytext=(place, 0),
+                textcoords="offset points",
+                fontsize=6.5,
+                color=INK,
+                va="center",
+                ha=side,
+            )
+            box = text.get_window_extent()
+            inside = axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1
+            if named < NAMED and inside and not any(box.overlaps(other) for other in taken):
+                taken.append(box)
+                named += 1
+                break
+            text.remove()
