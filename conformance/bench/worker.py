@@ -53,8 +53,9 @@ class Job:
     functions        names; none: every function with variants
     uniform, family  inputs per function for its error: random ones, and at most of each hard family
     figures          random points per promised figure; 0: none
-    seconds          how long it should take; 0: as long as it takes. Core functions come first, and what
-                     the time does not suffice for is left out
+    seconds          how long it should take; 0: as long as it takes. Core functions come first
+    leave_out        whether functions are left out that the time does not suffice for; else they get the
+                     least number of rounds
     """
 
     target: str
@@ -65,6 +66,7 @@ class Job:
     family: int
     figures: int
     seconds: float
+    leave_out: bool = False
 
     def to_json(self) -> str:
         """The job as text."""
@@ -127,7 +129,7 @@ def measure(job: Job, say: Say) -> dict[str, Any]:
     kept: list[dict[str, Any]] = []
     left_out: list[str] = []
     for k, group in enumerate(chosen):
-        if time.monotonic() > end:
+        if job.leave_out and time.monotonic() > end:
             left_out.append(group.base.name)
             continue
         # Every group gets an equal share of the time that is left.
