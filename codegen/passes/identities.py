@@ -184,10 +184,10 @@ def identities(ranges: Ranges, kinds: frozenset[str]) -> Rule:
     """The rule that applies the rows of these kinds."""
     by_operation: dict[str, list[Row]] = {}
     for row in ROWS:
-        outer = patterns.parts(patterns.parse(row.pattern))
-        assert outer is not None
+        outer = patterns.parse(row.pattern)
+        assert isinstance(outer, patterns.Operation)
         if row.kind in kinds:
-            by_operation.setdefault(outer[0], []).append(row)
+            by_operation.setdefault(outer.op, []).append(row)
 
     def rule(values: Values, e: ir.Expr) -> Rewrite | None:
         for row in by_operation.get(patterns.operation(e) or "", ()):

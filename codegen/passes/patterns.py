@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import functools
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 from codegen.ir import nodes as ir
 from codegen.ir.types import BOOL, Type, Vector
@@ -25,85 +26,101 @@ _OPERATORS: dict[type, str] = {
 }  # fmt: skip
 
 
+@dataclass(frozen=True)
+class Name:
+    """Any value; a path of names joined by dots is one name."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Number:
+    """A constant."""
+
+    value: float | int | bool
+
+
+@dataclass(frozen=True)
+class Operation:
+    """An operation by its name in the registry, or "select"."""
+
+    op: str
+    operands: tuple[Pattern, ...]
+
+
+Pattern = Name | Number | Operation
+
+
 @functools.cache
-def parse(text: str) -> ast.expr:
-    """The pattern of a text; raises ValueError for what is no expression."""
-    return ast.parse(text, mode="eval").body
+def parse(text: str) -> Pattern:
+    """The pattern of a text; raises ValueError or SyntaxError for what is none."""
+    return _pattern(ast.parse(text, mode="eval").body)
 
 
-def parts(pattern: ast.expr) -> tuple[str, tuple[ast.expr, ...]] | None:
-    """The operation of a pattern and its operands; None for names and numbers."""
-    if number_of(pattern) is not None:
-        return None
-    match pattern:
-        case ast.BinOp(left=a, op=op, right=b):
-            return _OPERATORS[type(op)], (a, b)
-        case ast.UnaryOp(op=op, operand=a):
-            return _OPERATORS[type(op)], (a,)
-        case ast.Compare(left=a, ops=[op], comparators=[b]):
-            return _OPERATORS[type(op)], (a, b)
-        case ast.BoolOp(op=op, values=[a, b]):
-            return _OPERATORS[type(op)], (a, b)
-        case ast.IfExp(test=c, body=a, orelse=b):
-            return "select", (c, a, b)
-        case ast.Call(func=ast.Name(id=name), args=args):
-            return name, tuple(args)
-        case ast.Name():
-            return None
-        case _:
-            raise ValueError(f"no pattern: {ast.unparse(pattern)}")
-
-
-def number_of(pattern: ast.expr) -> float | int | bool | None:
-    """The number that a pattern is, with its sign; None for anything else."""
-    match pattern:
+def _pattern(node: ast.expr) -> Pattern:
+    match node:
+        case ast.Name(id=name):
+            return Name(name)
+        case ast.Attribute():
+            return Name(ast.unparse(node))
         case ast.Constant(value=bool() | int() | float() as number):
-            return number
+            return Number(number)
         case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as number)):
-            return -number
+            return Number(-number)
+        case ast.BinOp(left=a, op=op, right=b) | ast.Compare(left=a, ops=[op], comparators=[b]):
+            return Operation(_OPERATORS[type(op)], (_pattern(a), _pattern(b)))
+        case ast.BoolOp(op=op, values=[a, b]):
+            return Operation(_OPERATORS[type(op)], (_pattern(a), _pattern(b)))
+        case ast.UnaryOp(op=op, operand=a):
+            return Operation(_OPERATORS[type(op)], (_pattern(a),))
+        case ast.IfExp(test=c, body=a, orelse=b):
+            return Operation("select", (_pattern(c), _pattern(a), _pattern(b)))
+        case ast.Call(func=ast.Name(id=name), args=args, keywords=[]):
+            return Operation(name, tuple(map(_pattern, args)))
         case _:
-            return None
+            raise ValueError(f"no pattern: {ast.unparse(node)}")
+
+
+def names(pattern: Pattern) -> set[str]:
+    """The names in a pattern."""
+    if isinstance(pattern, Operation):
+        return {name for operand in pattern.operands for name in names(operand)}
+    return {pattern.name} if isinstance(pattern, Name) else set()
 
 
 def operation(e: ir.Expr) -> str | None:
     """The operation of a value, in the words of patterns; None where patterns have no word."""
-    match e:
-        case ir.Unary() | ir.Binary() | ir.Builtin():
-            return e.op
-        case ir.Select():
-            return "select"
-        case _:
-            return None
+    if isinstance(e, ir.Binary | ir.Builtin | ir.Unary):
+        return e.op
+    return "select" if isinstance(e, ir.Select) else None
 
 
-def match(pattern: ast.expr, e: ir.Expr, found: Found | None = None) -> Iterator[dict[str, ir.Expr]]:
+def match(pattern: Pattern, e: ir.Expr, found: Found | None = None) -> Iterator[dict[str, ir.Expr]]:
     """Every way in which a value fits a pattern: name -> value."""
-    bound = dict(found or {})
-    if isinstance(pattern, ast.Name):
-        if bound.setdefault(pattern.id, e) is e:
-            yield bound
-        return
-    number = number_of(pattern)
-    if number is not None:
-        components = constant_components(e)
-        if components is not None and all(x == number and _alike(x, number) for x in components):
-            yield bound
-        return
-    op, operands = parts(pattern) or ("", ())
-    given = ir.children(e)
-    if operation(e) != op or len(given) != len(operands):
-        return
-    orders = [given, given[::-1]] if op in COMMUTATIVE else [given]
-    for order in orders:
-        yield from _all(operands, order, bound)
+    if isinstance(pattern, Name):
+        known = None if found is None else found.get(pattern.name)
+        if known is None or known is e:
+            yield {**(found or {}), pattern.name: e}
+    elif isinstance(pattern, Number):
+        if _is_number(e, pattern.value):
+            yield dict(found or {})
+    elif operation(e) == pattern.op:
+        given = ir.children(e)
+        if len(given) == len(pattern.operands):
+            yield from _all(pattern.operands, given, found or {})
+            if pattern.op in COMMUTATIVE:
+                yield from _all(pattern.operands, given[::-1], found or {})
 
 
-def _alike(x: float | int | bool, number: object) -> bool:
-    return isinstance(x, bool) == isinstance(number, bool)
+def _is_number(e: ir.Expr, number: float | int | bool) -> bool:
+    numbers = constant_components(e)
+    return numbers is not None and all(
+        x == number and isinstance(x, bool) == isinstance(number, bool) for x in numbers
+    )
 
 
 def _all(
-    patterns: tuple[ast.expr, ...], given: tuple[ir.Expr, ...], bound: Found
+    patterns: tuple[Pattern, ...], given: tuple[ir.Expr, ...], bound: Found
 ) -> Iterator[dict[str, ir.Expr]]:
     if not patterns:
         yield dict(bound)
@@ -112,31 +129,27 @@ def _all(
         yield from _all(patterns[1:], given[1:], found)
 
 
-def make(pattern: ast.expr, found: Found, values: Values, type_: Type) -> ir.Expr:
+def make(pattern: Pattern, found: Found, values: Values, type_: Type) -> ir.Expr:
     """The value that a pattern describes; numbers and scalars widen to `type_` where it is a vector."""
 
-    def build(p: ast.expr, wanted: Type) -> ir.Expr:
-        if isinstance(p, ast.Name):
-            return found[p.id]
-        number = number_of(p)
-        if number is not None:
-            return values.number(number, wanted)
-        op, operands = parts(p) or ("", ())
-        if op == "select":
-            c, a, b = operands
+    def build(p: Pattern, wanted: Type) -> ir.Expr:
+        if isinstance(p, Name):
+            return found[p.name]
+        if isinstance(p, Number):
+            return values.number(p.value, wanted)
+        if p.op == "select":
+            c, a, b = p.operands
             sides = build(a, wanted), build(b, wanted)
             return values.build(ir.Select(sides[0].type, build(c, BOOL), *sides))
-        inner = _operand_type(operands, found, wanted)
-        return apply(values, op, tuple(build(x, inner) for x in operands))
+        inner = _operand_type(p, found, wanted)
+        return apply(values, p.op, tuple(build(x, inner) for x in p.operands))
 
     return values.splat(build(pattern, type_), type_)
 
 
-def _operand_type(operands: tuple[ast.expr, ...], found: Found, wanted: Type) -> Type:
+def _operand_type(p: Operation, found: Found, wanted: Type) -> Type:
     """The type of numbers among operands: that of the names beside them."""
-    types = [
-        found[n.id].type for p in operands for n in ast.walk(p) if isinstance(n, ast.Name) and n.id in found
-    ]
+    types = [found[name].type for name in sorted(names(p)) if name in found]
     wide = [t for t in types if isinstance(t, Vector)]
     return wide[0] if wide else types[0] if types else wanted
 
@@ -146,10 +159,12 @@ def apply(values: Values, op: str, operands: tuple[ir.Expr, ...]) -> ir.Expr:
     row = BUILTINS[op] if op in BUILTINS else OPERATORS[op]
     type_ = row.result(tuple(x.type for x in operands))
     if type_ is None:  # a scalar beside a vector
-        vector = next(x.type for x in operands if isinstance(x.type, Vector))
-        operands = tuple(values.splat(x, vector) for x in operands)
-        type_ = row.result(tuple(x.type for x in operands))
-    assert type_ is not None
+        vector = next((x.type for x in operands if isinstance(x.type, Vector)), None)
+        if vector is not None:
+            operands = tuple(values.splat(x, vector) for x in operands)
+            type_ = row.result(tuple(x.type for x in operands))
+    if type_ is None:
+        raise ValueError(f"{op} has no such operands")
     if op in BUILTINS:
         return values.build(ir.Builtin(type_, op, operands))
     if len(operands) == 1:

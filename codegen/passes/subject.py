@@ -6,7 +6,6 @@ and the nearest valid one.
 
 from __future__ import annotations
 
-import ast
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -198,21 +197,16 @@ class Subject:
             raise UserError(f"{where}: nothing is at least {ends[0]} and at most {ends[1]}")
         try:
             pattern = patterns.parse(fact.expression)
-            names: dict[str, ir.Expr] = {}
-            flat = _flattened(pattern)
-            for name in {n.id for n in ast.walk(flat) if isinstance(n, ast.Name)}:
-                path = name.replace("__", ".")
-                if path in self.types:
-                    found = self._argument(values, path, self.types[path])
-                    if isinstance(found, ir.Expr) and isinstance(found.type, Array):
-                        found = any_element(values, found)
-                    if isinstance(found, dict):
-                        raise UserError(f"{where}: {path} is a {self.types[path].name}")
-                    names[name] = found
-                elif not _is_called(flat, name):
+            found: dict[str, ir.Expr] = {}
+            for path in sorted(patterns.names(pattern)):
+                if path not in self.types:
                     raise unknown(f"parameter in {where}", path, self.types)
-            return patterns.make(flat, names, values, F32), fact.low, fact.high
-        except (SyntaxError, ValueError, KeyError, AssertionError, StopIteration):
+                value = self._argument(values, path, self.types[path])
+                if isinstance(value, dict):
+                    raise UserError(f"{where}: {path} is a {self.types[path].name}")
+                found[path] = any_element(values, value) if isinstance(value.type, Array) else value
+            return patterns.make(pattern, found, values, F32), fact.low, fact.high
+        except (SyntaxError, ValueError, KeyError):
             raise UserError(f"{where} is no expression of built-ins and parameters") from None
 
 
@@ -226,25 +220,6 @@ def _constant_of(values: Values, type_: Scalar | Vector, numbers: Sequence[float
         parts = tuple(values.build(ir.Const(type_.element, n)) for n in numbers)
         return values.build(ir.Construct(type_, parts))
     return values.build(ir.Const(type_, numbers[0]))
-
-
-def _flattened(pattern: ast.expr) -> ast.expr:
-    """The pattern with paths as single names: optics.overlap -> optics__overlap."""
-
-    class Join(ast.NodeTransformer):
-        def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
-            return ast.Name(id=ast.unparse(node).replace(".", "__"), ctx=ast.Load())
-
-    made = Join().visit(ast.parse(ast.unparse(pattern), mode="eval").body)
-    assert isinstance(made, ast.expr)
-    return made
-
-
-def _is_called(pattern: ast.expr, name: str) -> bool:
-    return any(
-        isinstance(n, ast.Call) and isinstance(n.func, ast.Name) and n.func.id == name
-        for n in ast.walk(pattern)
-    )
 
 
 def _numbers(where: str, type_: Scalar | Vector, given: Any) -> list[float | int | bool]:

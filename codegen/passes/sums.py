@@ -37,6 +37,8 @@ def cancelled(values: Values, e: ir.Expr) -> Rewrite | None:
     """Replaces a sum by what is left of it."""
     if not (isinstance(e, ir.Binary) and e.op in "+-" and _element(e.type) == F32):
         return None
+    if not _subtracts(e, DEEPEST):
+        return None
     atoms: dict[int, ir.Expr] = {}
     expanded = _Expansion(atoms)
     found = expanded.of(e, DEEPEST)
@@ -47,6 +49,17 @@ def cancelled(values: Values, e: ir.Expr) -> Rewrite | None:
     if made is None or _cost(made) >= _cost(e):
         return None
     return Rewrite(made, NAME, WHY)
+
+
+def _subtracts(e: ir.Expr, depth: int) -> bool:
+    """Whether anything that is multiplied out has a minus, without which nothing cancels."""
+    match e:
+        case ir.Binary(op="-") | ir.Unary(op="negate"):
+            return True
+        case ir.Binary(op="+" | "*") if depth > 0:
+            return _subtracts(e.left, depth - 1) or _subtracts(e.right, depth - 1)
+        case _:
+            return any(x < 0 for x in constant_components(e) or ())
 
 
 class _Expansion:

@@ -11,8 +11,6 @@ And each row is found: the pass turns the pattern into the replacement.
 
 from __future__ import annotations
 
-import ast
-
 import numpy as np
 import pytest
 
@@ -48,8 +46,7 @@ def row_id(row: Row) -> str:
 
 
 def names_of(row: Row) -> list[str]:
-    found = {n.id for n in ast.walk(patterns.parse(row.pattern)) if isinstance(n, ast.Name)}
-    return sorted(found & set(TYPES))
+    return sorted(patterns.names(patterns.parse(row.pattern)))
 
 
 def domain_of(row: Row, name: str) -> Domain | None:
@@ -61,7 +58,9 @@ def domain_of(row: Row, name: str) -> Domain | None:
 
 
 def type_of_result(row: Row) -> Type:
-    op, _ = patterns.parts(patterns.parse(row.pattern)) or ("", ())
+    pattern = patterns.parse(row.pattern)
+    assert isinstance(pattern, patterns.Operation)
+    op = pattern.op
     if op in ("cross", "normalize"):
         return VEC3
     if op in ("not", "and", "or", "<", "<=", ">", ">=", "==", "!="):
