@@ -92,6 +92,10 @@ def half_of(type_: Type) -> Type:
         element = half_of(type_.element)
         assert not isinstance(element, Struct)
         return array_of(element, type_.size)
+    if isinstance(type_, Array):
+        element = half_of(type_.element)
+        assert isinstance(element, Scalar | Vector)
+        return array_of(element, type_.size)
     if isinstance(type_, Struct):
         return Struct(type_.name, tuple(replace(f, type=half_of(f.type)) for f in type_.fields))
     return _HALVES.get(type_, type_)
