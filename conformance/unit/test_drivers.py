@@ -191,3 +191,22 @@ def test_replay_runs_one_lane() -> None:
     result = check("llvmpipe-compute", "pair", replay=identity)
     assert result.lanes == 1
     assert result.passed
+
+
+def test_replay_runs_the_input_of_a_record() -> None:
+    """A record brings its words, so that it outlives the family that it was drawn from."""
+    identity = Identity("sin_angle", "llvmpipe-compute+default", "gone", 50, SEED, 7)
+    words = "a=3f800000 00000000 00000000;b=00000000 3f800000 00000000"
+    result = check("llvmpipe-compute", "default", replay=identity, words=words)
+    assert (result.lanes, result.passed) == (1, True)
+    assert next(b.worst for b in result.bounds if b.lanes).startswith("a = (1, 0, 0) [3f800000")
+    assert result.permitted is not None
+    assert (result.permitted.table, result.permitted.inside) == ("glsl", 1)
+
+
+@pytest.mark.parametrize(("mode", "table"), [("default", "opencl"), ("fast-relaxed", "opencl_relaxed")])
+def test_mode_chooses_the_table(mode: str, table: str) -> None:
+    result = check("pocl", mode, uniform=100, family=10)
+    assert result.permitted is not None
+    assert result.permitted.table == table
+    assert result.passed
