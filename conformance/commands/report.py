@@ -20,7 +20,7 @@ from conformance.bench.record import rounded
 from conformance.bench.run import Options, measure, places
 from conformance.report.agreement import agreement
 from conformance.report.model import build, read_report
-from conformance.report.scenes import read_scene_report
+from conformance.report.scenes import figures_of
 
 EMISSION_RUNS = 5
 
@@ -38,7 +38,7 @@ EMISSION_RUNS = 5
     "scenes",
     multiple=True,
     type=click.Path(path_type=Path),
-    help="A folder that vair scene wrote: its figures before and after; repeatable.",
+    help="A scene file, or a folder that vair scene wrote: figures before and after; repeatable.",
 )
 @click.option("--from-recorded", is_flag=True, help="Measure nothing: show what was recorded.")
 @click.option("--against", type=click.Path(path_type=Path), help="Say where an earlier report disagrees.")
@@ -74,15 +74,15 @@ def command(
         raise UserError(f"the report needs the package {error.name}; install vair[report]") from error
     prepare(folder)
     before = read_report(against) if against is not None else None
-    shown = [read_scene_report(path) for path in scenes]
+    shown = [figures_of(path, folder) for path in scenes]
     skipped: dict[str, str] = {}
     emission: list[dict[str, Any]] = []
     if from_recorded:
         results = kept_results(library, targets, wanted)
     else:
+        if not (quick or wanted):
+            emission = [f.as_data() for f in emission_figures(library, EMISSION_RUNS)]
         results, skipped = measured(library, where, quick, wanted, record, named=bool(targets or drivers))
-        whole = not (quick or wanted)
-        emission = [f.as_data() for f in emission_figures(library, EMISSION_RUNS)] if whole else []
     report = build(
         library,
         results,

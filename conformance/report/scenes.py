@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from codegen.errors import UserError
+from codegen.library import default_root
+from conformance.bench.run import ONE_THREAD
 
 SCHEMA = 1
 COLUMNS = (
@@ -22,6 +27,30 @@ COLUMNS = (
     "Predicted",
 )
 DASH = "\u2013"
+
+
+def figures_of(path: Path, folder: Path) -> dict[str, Any]:
+    """The figures of a scene: of what vair scene wrote before, or writes now for a scene file.
+
+    path    a scene file (.toml), a folder that vair scene wrote, or its report.json
+    folder  where a scene file's result goes, below scenes/
+    """
+    if path.suffix != ".toml":
+        return read_scene_report(path)
+    written = folder / "scenes" / path.stem
+    written.mkdir(parents=True, exist_ok=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "codegen.cli", "scene", str(path.resolve()), "-o", str(written.resolve())],
+        cwd=default_root().parent,
+        env={**os.environ, **ONE_THREAD},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        last = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
+        raise UserError(f"vair scene {path}: {last.removeprefix('vair: ')}")
+    return read_scene_report(written)
 
 
 def read_scene_report(path: Path) -> dict[str, Any]:
@@ -65,7 +94,7 @@ def _row(target: Mapping[str, Any]) -> list[str]:
 
 
 def _driver(target: Mapping[str, Any]) -> str:
-    return str(target.get("driver") or DASH) if target.get("executed") else "not executed"
+    return str(target.get("driver") or DASH).partition(";")[0] if target.get("executed") else "not executed"
 
 
 def _change(values: Mapping[str, float] | None) -> str:
