@@ -58,6 +58,12 @@ class Ranges:
         """An expression over values lies between two ends; only before anything is asked."""
         assert not self._known
         self.facts[id(e)] = low, high
+        self._kept.append(e)
+
+    def check_facts(self) -> None:
+        """Raise UserError where a fact contradicts what the ranges of parameters give."""
+        for e in tuple(self._kept):
+            self.bounds(e)
 
     def bounds(self, e: ir.Expr) -> tuple[Bounds, ...]:
         """The bounds of each component. Raises UserError where a fact contradicts what ranges give."""
@@ -96,10 +102,6 @@ class Ranges:
         """The ends that a fact or the lengths of vectors give a float value, and whether it is a fact."""
         if not _is_float(e.type):
             return None
-        fact = self._fact(e)
-        if fact is not None:
-            slack = FACT_SLACK * max(1.0, *(abs(x) for x in fact if math.isfinite(x)))
-            return fact[0] - slack, fact[1] + slack, True
         size = math.inf
         match e:
             case ir.Builtin(op="dot", args=(a, b)):
@@ -108,7 +110,18 @@ class Ranges:
                 size = math.sqrt(product(self.values, a, a)) * (1.0 + UNIT_SLACK)
             case _ if isinstance(e.type, Vector):
                 size = norm(self.values, e)
+        fact = self._fact(e)
+        if fact is not None:
+            slack = FACT_SLACK * max(1.0, *(abs(x) for x in fact if math.isfinite(x)))
+            low, high = fact[0] - slack, fact[1] + slack
+            if low > size or high < -size:
+                raise self._contradiction(e, low, high, Bounds(-size, size))
+            return max(low, -size), min(high, size), True
         return (-size, size, False) if math.isfinite(size) else None
+
+    def _contradiction(self, e: ir.Expr, low: float, high: float, found: Bounds) -> UserError:
+        given = f'fact "{self.values.show(e)}" in [{low:.6g}, {high:.6g}]'
+        return UserError(f"{given} contradicts the ranges, which give {found}")
 
     def _fact(self, e: ir.Expr) -> tuple[float, float] | None:
         """What a fact says of an expression; one of an array speaks of each of its elements."""
@@ -126,8 +139,7 @@ class Ranges:
             return found
         low, high, is_fact = cut
         if is_fact and any(_is_bounded(s) and not _meets(s, low, high) for s in found):
-            given = f'fact "{self.values.show(e)}" in [{low:.6g}, {high:.6g}]'
-            raise UserError(f"{given} contradicts the ranges, which give {_hull((found[0],))}")
+            raise self._contradiction(e, low, high, _hull((found[0],)))
         return remembered(
             ("cut", id(found), low, high, is_fact),
             lambda: tuple(_limited(s, low, high) if is_fact or _is_bounded(s) else s for s in found),

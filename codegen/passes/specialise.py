@@ -132,6 +132,7 @@ def specialise(
     for given in facts:
         fact = given if isinstance(given, Fact) else Fact(*given)
         _learn(proofs, subject, values, fact)
+    proofs.check_facts()
     values.simplify_by(_rules(proofs, frozenset(kinds)))
     inliner = Inliner(
         library,

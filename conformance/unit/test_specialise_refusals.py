@@ -68,6 +68,11 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         {"constants": {"n": (0.0, 0.0, 1.0), "v": (0.0, 0.0, 1.0)}, "facts": [("dot(n, v)", 0.0, 0.5)]},
         "contradicts the constants",
     ),
+    "fact beyond unit vectors": ({"facts": [("dot(n, v)", 1.5, 2.0)]}, "contradicts the ranges, which give"),
+    "fact against ranges": (
+        {"ranges": {"optics.overlap": (0.0, 0.5)}, "facts": [("optics.overlap * optics.overlap", 0.5, 1.0)]},
+        "contradicts the ranges, which give",
+    ),
     "fact of nothing known": ({"facts": [("dot(n, w)", 0.0, 1.0)]}, 'unknown parameter in .* "w"'),
     "fact that is no expression": ({"facts": [("dot(n, v", 0.0, 1.0)]}, "is no expression of built-ins"),
     "fact of an unknown built-in": ({"facts": [("dott(n, v)", 0.0, 1.0)]}, "is no expression of built-ins"),
