@@ -62,8 +62,11 @@ ROWS: Mapping[str, Row] = {
     "pow_one_minus_from4": Row("q", "p", _one_minus, 1),
     "pow_one_minus_gauss": Row("q", "p", _one_minus, 1),
     "pow_one_minus_sq16": Row("q", "p", _one_minus, 1),
+    "pow_one_minus_from8": Row("q", "p", _one_minus, 1),
+    "pow_one_minus_cubic8": Row("q", "p", _one_minus, 1),
     "safe_pow": Row("x", "y", _not_negative, 0),
     "safe_pow_exp2": Row("x", "y", _not_negative, 0),
+    "safe_pow_near_one": Row("x", "y", _not_negative, 0),
 }
 
 
