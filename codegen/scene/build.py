@@ -14,7 +14,7 @@ from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.library import Library
 from codegen.passes.operations import operations
-from codegen.passes.specialise import specialise
+from codegen.passes.specialise import Specialised, specialise
 from codegen.scene import environment, spirv, stopwatch, text
 from codegen.scene.document import Scene
 from codegen.scene.environment import ConstantLight, MapError
@@ -23,7 +23,7 @@ from codegen.scene.general import General, general_function
 from codegen.scene.knowledge import Knowledge, knowledge, model_ranges
 from codegen.scene.points import SEED, Points, draw
 from codegen.scene.prices import Prices
-from codegen.scene.proof import Proof, prove
+from codegen.scene.proof import Proof, Results, prove
 from codegen.scene.reduce import Reduced, Reducer
 from codegen.scene.search import Search
 from codegen.scene.stopwatch import Speed
@@ -31,6 +31,8 @@ from codegen.scene.stopwatch import Speed
 SEARCH_POINTS = 20_000
 PROOF_POINTS = 100_000
 ENVIRONMENT_POINTS = 24
+LEAST_SHARE = 0.3
+"""Share of the budget below which a search that fails its proof is not tried again."""
 
 Progress = Callable[[str], None]
 
@@ -89,6 +91,7 @@ class Builder:
     runtimes: Mapping[str, Any]
     timed: bool = True
     say: Progress = lambda sentence: None
+    results: Results = field(default_factory=dict)
 
     def build(self) -> Outcome:
         """Everything but the files; raises UserError where nothing may be written."""
@@ -114,10 +117,7 @@ class Builder:
             )
         proven = draw(self.scene, general, PROOF_POINTS, SEED + 1)
         exact = as_floats(evaluate(library, general.function.name, proven.inputs, "float64"))
-        results = [self.target(library, general, r, proven, exact) for r in reduced.values()]
-        refused = [r for r in results if not self.holds(r)]
-        if refused:
-            raise UserError(self.refusal(refused[0]))
+        results = [self.proven(library, general, reducer, r, proven, exact) for r in reduced.values()]
         error = None
         if pixels is not None:
             self.say("measuring the map")
@@ -152,6 +152,26 @@ class Builder:
                 f"{reduced.target} is {reduced.error.largest * MARGIN:.3g}, which rounding to float32 takes"
             )
 
+    def proven(
+        self,
+        library: Library,
+        general: General,
+        reducer: Reducer,
+        reduced: Reduced,
+        points: Points,
+        exact: Floats,
+    ) -> TargetResult:
+        """The result of one target; where more points show more error, the search gets less room."""
+        share = 1.0
+        while True:
+            result = self.target(library, general, reduced, points, exact)
+            if self.holds(result):
+                return result
+            if not reduced.changes or share < LEAST_SHARE or not result.exact_proof.holds(0.0):
+                raise UserError(self.refusal(result))
+            share *= 0.7
+            reduced = reducer.reduced(Prices.of(library, reduced.target), share * self.scene.budget)
+
     def target(
         self, library: Library, general: General, reduced: Reduced, points: Points, exact: Floats
     ) -> TargetResult:
@@ -163,9 +183,11 @@ class Builder:
         self.say(f"proving on {target}")
         name = general.function.name
 
-        def proof(made: Any, budget: float) -> Proof:
+        def proof(made: Specialised, budget: float) -> Proof:
             extended = library.with_functions([made.function])
-            return prove(extended, name, made.function.name, points, exact, target, runtime, budget)
+            return prove(
+                extended, name, made.function.name, points, exact, target, runtime, budget, self.results
+            )
 
         exact_proof = proof(reduced.exact, 0.0)
         final_proof = proof(reduced.final, self.scene.budget) if reduced.changes else exact_proof

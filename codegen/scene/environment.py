@@ -57,8 +57,9 @@ def read_map(path: Path, shown: str) -> Floats:
             f'{shown}: "{path.name}" is {width} x {height}; a map in latitude and longitude is twice as '
             "wide as high"
         )
-    if not np.isfinite(rgb).all() or (rgb < 0.0).any():
-        raise UserError(f'{shown}: "{path.name}" holds a value that is negative or not finite')
+    if not np.isfinite(rgb).all():
+        raise UserError(f'{shown}: "{path.name}" holds a value that is not finite')
+    rgb = np.maximum(rgb, 0.0)  # lossy compression leaves small negative numbers beside bright ones
     if not rgb.any():
         raise UserError(f'{shown}: "{path.name}" is black: no light comes from it')
     return rgb

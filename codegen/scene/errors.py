@@ -27,6 +27,10 @@ class Measured:
     worst: int
     finite: bool
 
+    def fits(self, budget: float) -> bool:
+        """Whether a prediction fits a budget, with the margin."""
+        return self.finite and self.largest * MARGIN <= budget
+
     def within(self, budget: float) -> bool:
         """Whether it fits a budget as it is."""
         return self.finite and self.largest <= budget
@@ -49,6 +53,10 @@ def distance(got: Floats, *references: Floats) -> Measured:
     return Measured(float(apart[worst]), float(np.quantile(apart, 0.999)), worst, finite)
 
 
+SCREEN = 2_500
+"""Points that a candidate is tried on before all of them are asked."""
+
+
 @dataclass(frozen=True)
 class Reference:
     """The general function's values over points: in float64, and as float32 rounds it.
@@ -68,7 +76,18 @@ class Reference:
         single = as_floats(evaluate(library, name, points.inputs, "float32"))
         return Reference(points, exact, single)
 
-    def error(self, library: Library, name: str, inputs: Inputs | None = None) -> Measured:
-        """How far another function is, evaluated in float32."""
-        given = self.points.inputs if inputs is None else inputs
+    def screen(self) -> Reference:
+        """The same over the first few points."""
+        points = self.points
+        few = Points(first(points.inputs, SCREEN), min(SCREEN, points.count), points.hard[:SCREEN])
+        return Reference(few, self.exact[:SCREEN], self.single[:SCREEN])
+
+    def error(self, library: Library, name: str) -> Measured:
+        """How far another function of some of the parameters is, evaluated in float32."""
+        given = {p.name: self.points.inputs[p.name] for p in library.function(name).parameters}
         return distance(as_floats(evaluate(library, name, given, "float32")), self.exact, self.single)
+
+
+def first(inputs: Inputs, count: int) -> Inputs:
+    """The first lanes of inputs."""
+    return {name: np.asarray(value)[:count] for name, value in inputs.items()}

@@ -8,18 +8,19 @@ a colour.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from codegen.errors import Place
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Interval, Unit
-from codegen.ir.types import F32, VEC3, Struct, Type
+from codegen.ir.types import F32, I32, VEC3, Scalar, Struct, Type, Vector, array_of
 from codegen.scene.document import Scene
 from codegen.scene.environment import ConstantLight
-from codegen.scene.lights import Lights
+from codegen.scene.lights import UNROLLED, Lights
 from codegen.scene.model import COLOUR, HALF, LIGHT, VIEWER, Slot
+from codegen.scene.settings import Range
 
 CLOSEST_SQUARE = 1e-12
 """Squared distance to a point light below which its direction fades instead of being normalised."""
@@ -29,15 +30,18 @@ REACH = 1e4
 
 @dataclass(frozen=True)
 class LightInputs:
-    """The names that one light's inputs have: what it is, and the model's path -> name of the parameter.
+    """The inputs of one light, or of all lights of a kind that has too many to be written out.
 
-    kind   "directional", "point" or "constant"
-    names  path of the model (with "position" for a point light) -> parameter
+    kind      "directional", "point" or "constant"
+    names     path of the model (with "position" for a point light) -> parameter
+    count     how many; more than one: the parameters are arrays
+    constant  the lights themselves, for constant ones
     """
 
     kind: str
     names: dict[str, str]
-    constant: ConstantLight | None = None
+    count: int = 1
+    constant: tuple[ConstantLight, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -69,11 +73,23 @@ def colour_domain(lights: Lights) -> Interval:
 
 
 def general_function(scene: Scene, constant: Sequence[ConstantLight] = ()) -> General:
-    """The general function over the scene's lights and these constant ones, named FUNCTION_general."""
+    """The general function over the scene's lights and these constant ones, named FUNCTION_general.
+
+    Up to UNROLLED lights of a kind are written out; more are a loop over arrays.
+    """
     builder = _Builder(scene)
-    inputs = [builder.light("directional", k) for k in range(scene.lights.directional)]
-    inputs += [builder.light("point", scene.lights.directional + k) for k in range(scene.lights.point)]
-    inputs += [builder.constant(light, k) for k, light in enumerate(constant)]
+    inputs: list[LightInputs] = []
+    first = 0
+    for kind, count in (("directional", scene.lights.directional), ("point", scene.lights.point)):
+        if count > UNROLLED:
+            inputs.append(builder.light(kind, "s" if first == 0 else f"s_{first}", count))
+        else:
+            inputs += [builder.light(kind, builder.suffix.format(first + k)) for k in range(count)]
+        first += count
+    if len(constant) > UNROLLED:
+        inputs.append(builder.constant(tuple(constant)))
+    else:
+        inputs += [builder.constant((light,)) for light in constant]
     return builder.finish(inputs)
 
 
@@ -97,40 +113,53 @@ class _Builder:
             what = "position of the shaded point, in one space with the lights"
             self.add(Slot("position", "position", VEC3, Interval(-REACH, REACH), what), "position")
 
-    def add(self, slot: Slot, name: str) -> None:
-        self.slots[name] = Slot(slot.path, name, slot.type, slot.domain, slot.doc)
+    def add(self, slot: Slot, name: str, count: int = 1) -> None:
+        type_ = slot.type
+        if count > 1:
+            assert isinstance(type_, Scalar | Vector)
+            type_ = array_of(type_, count)
+        self.slots[name] = Slot(slot.path, name, type_, slot.domain, slot.doc)
 
-    def light(self, kind: str, k: int) -> LightInputs:
-        suffix = self.suffix.format(k)
+    def light(self, kind: str, suffix: str, count: int = 1) -> LightInputs:
+        """One light, or an array of lights, as parameters."""
         names = {}
         if kind == "directional":
-            names[LIGHT] = self.own(f"l{suffix}", VEC3, Unit(), "direction to the light")
+            stem = "l" if count == 1 else "light_direction"
+            names[LIGHT] = self.own(f"{stem}{suffix}", VEC3, Unit(), "direction to the light", count)
         else:
             what = "position of the light"
-            names["position"] = self.own(f"light_position{suffix}", VEC3, Interval(-REACH, REACH), what)
+            domain = Interval(-REACH, REACH)
+            names["position"] = self.own(f"light_position{suffix}", VEC3, domain, what, count)
         what = "linear RGB of the light"
         if kind == "point":
             what += " at distance 1"
-        names[COLOUR] = self.own(f"light{suffix}", VEC3, colour_domain(self.scene.lights), what)
+        stem = "light" if count == 1 else "light_colour"
+        names[COLOUR] = self.own(f"{stem}{suffix}", VEC3, colour_domain(self.scene.lights), what, count)
         for path in self.scene.lights.per_light:
             slot = self.model.slots[path]
-            self.add(slot, slot.name + suffix)
-            names[path] = slot.name + suffix
-        return LightInputs(kind, names)
+            names[path] = f"{slot.name}{suffix}"
+            self.add(self.narrowed(slot), names[path], count)
+        return LightInputs(kind, names, count)
 
-    def constant(self, light: ConstantLight, k: int) -> LightInputs:
-        """A constant light has the first light's parameters of its own, or new ones where there is none."""
+    def constant(self, lights: tuple[ConstantLight, ...]) -> LightInputs:
+        """Constant lights; what each light has of its own is one value for all of these."""
         names = {}
         for path in self.scene.lights.per_light:
             slot = self.model.slots[path]
-            name = f"{slot.name}_environment"
-            if name not in self.slots:
-                self.add(slot, name)
-            names[path] = name
-        return LightInputs("constant", names, light)
+            names[path] = f"{slot.name}_environment"
+            if names[path] not in self.slots:
+                self.add(slot, names[path])
+        return LightInputs("constant", names, len(lights), lights)
 
-    def own(self, name: str, type_: Type, domain: Domain, doc: str) -> str:
-        self.slots[name] = Slot(name, name, type_, domain, doc)
+    def narrowed(self, slot: Slot) -> Slot:
+        """The slot with the scene's range for its domain: arrays have no other place for it."""
+        setting = self.scene.settings.get(slot.path)
+        if not isinstance(setting, Range):
+            return slot
+        return replace(slot, domain=Interval(min(setting.low), max(setting.high)))
+
+    def own(self, name: str, type_: Type, domain: Domain, doc: str, count: int = 1) -> str:
+        self.add(Slot(name, name, type_, domain, doc), name, count)
         return name
 
     def finish(self, inputs: list[LightInputs]) -> General:
@@ -147,7 +176,11 @@ class _Builder:
                 arguments[p.name] = ir.Var(p.type, self.shared[p.name])
         total: ir.Expr | None = None
         for k, light in enumerate(inputs):
-            statements, value = self.term(light, f"_{k}", arguments)
+            statements, value = (
+                self.loop(light, f"_{k}", arguments)
+                if light.count > 1
+                else self.term(light, f"_{k}", arguments)
+            )
             body += statements
             total = value if total is None else ir.Binary(VEC3, "+", total, value)
         assert total is not None
@@ -171,20 +204,58 @@ class _Builder:
         )
         return General(function, self.slots, tuple(inputs), self.shared, model.name)
 
+    def loop(
+        self, light: LightInputs, suffix: str, shared: dict[str, ir.Expr]
+    ) -> tuple[list[ir.Stmt], ir.Expr]:
+        """A loop over the lights of one kind, and its sum."""
+        body: list[ir.Stmt] = []
+        if light.constant:
+            body += [
+                ir.Let(f"constant_{what}{suffix}", _array([getattr(one, what) for one in light.constant]))
+                for what in ("direction", "colour")
+            ]
+        total = ir.Var(VEC3, f"total{suffix}")
+        statements, value = self.term(light, suffix, shared)
+        body.append(ir.Let(total.name, ir.Construct(VEC3, (ir.Const(F32, 0.0),)), mutable=True))
+        statements.append(ir.Assign(total.name, ir.Binary(VEC3, "+", total, value)))
+        body.append(ir.For(f"light_number{suffix}", 0, light.count, tuple(statements)))
+        return body, total
+
+    def element(self, light: LightInputs, name: str, type_: Type, suffix: str) -> ir.Expr:
+        """A parameter of one light: itself, or the element of an array."""
+        if light.count == 1 or light.kind == "constant":
+            return ir.Var(type_, name)
+        assert isinstance(type_, Scalar | Vector)
+        return ir.Index(
+            type_, ir.Var(array_of(type_, light.count), name), ir.Var(I32, f"light_number{suffix}")
+        )
+
+    def constants(self, light: LightInputs, suffix: str) -> tuple[ir.Expr, ir.Expr]:
+        """Direction and colour of a constant light."""
+        if light.count == 1:
+            return _vector(light.constant[0].direction), _vector(light.constant[0].colour)
+        index = ir.Var(I32, f"light_number{suffix}")
+        arrays = (
+            ir.Var(array_of(VEC3, light.count), f"constant_{what}{suffix}")
+            for what in ("direction", "colour")
+        )
+        first, second = (ir.Index(VEC3, array, index) for array in arrays)
+        return first, second
+
     def term(
         self, light: LightInputs, suffix: str, shared: dict[str, ir.Expr]
     ) -> tuple[list[ir.Stmt], ir.Expr]:
         """The statements and the value of one light."""
         body: list[ir.Stmt] = []
         arguments = dict(shared)
-        if light.constant is not None:
-            direction: ir.Expr = _vector(light.constant.direction)
-            colour: ir.Expr = _vector(light.constant.colour)
+        if light.constant:
+            direction, colour = self.constants(light, suffix)
         elif light.kind == "point":
             statements, direction, colour = self.point(light, suffix)
             body += statements
         else:
-            direction, colour = ir.Var(VEC3, light.names[LIGHT]), ir.Var(VEC3, light.names[COLOUR])
+            direction = self.element(light, light.names[LIGHT], VEC3, suffix)
+            colour = self.element(light, light.names[COLOUR], VEC3, suffix)
         if HALF in self.model.slots:
             half = ir.Call(VEC3, "half_vector", (direction, ir.Var(VEC3, VIEWER)))
             body.append(ir.Let(f"halfway{suffix}", half))
@@ -192,10 +263,10 @@ class _Builder:
         arguments[LIGHT], arguments[COLOUR] = direction, colour
         for path in self.scene.lights.per_light:
             slot = self.model.slots[path]
-            arguments[path] = ir.Var(slot.type, light.names[path])
+            arguments[path] = self.element(light, light.names[path], slot.type, suffix)
         for p in self.model.function.parameters:
             if p.name not in arguments:
-                arguments[p.name] = self.mixed(p, light)
+                arguments[p.name] = self.mixed(p, light, suffix)
         ordered = tuple(arguments[p.name] for p in self.model.function.parameters)
         value: ir.Expr = ir.Call(VEC3, self.model.function.name, ordered)
         if not self.model.takes_colour:
@@ -203,13 +274,16 @@ class _Builder:
         body.append(ir.Let(f"radiance{suffix}", value))
         return body, ir.Var(VEC3, f"radiance{suffix}")
 
-    def mixed(self, p: ir.Parameter, light: LightInputs) -> ir.Expr:
+    def mixed(self, p: ir.Parameter, light: LightInputs, suffix: str) -> ir.Expr:
         """A struct with some fields of the light's own."""
         assert isinstance(p.type, Struct)
         parts = []
         for f in p.type.fields:
             path = f"{p.name}.{f.name}"
-            parts.append(ir.Var(f.type, light.names.get(path) or self.shared[path]))
+            own = light.names.get(path)
+            parts.append(
+                ir.Var(f.type, self.shared[path]) if own is None else self.element(light, own, f.type, suffix)
+            )
         return ir.Construct(p.type, tuple(parts))
 
     def point(self, light: LightInputs, suffix: str) -> tuple[list[ir.Stmt], ir.Expr, ir.Expr]:
@@ -225,11 +299,19 @@ class _Builder:
             [
                 ir.Let(
                     offset.name,
-                    ir.Binary(VEC3, "-", ir.Var(VEC3, light.names["position"]), ir.Var(VEC3, "position")),
+                    ir.Binary(
+                        VEC3,
+                        "-",
+                        self.element(light, light.names["position"], VEC3, suffix),
+                        ir.Var(VEC3, "position"),
+                    ),
                 ),
                 ir.Let(square.name, ir.Builtin(F32, "dot", (offset, offset))),
                 ir.Let(direction.name, ir.Binary(VEC3, "*", scale, offset)),
-                ir.Let(colour.name, ir.Binary(VEC3, "/", ir.Var(VEC3, light.names[COLOUR]), falloff)),
+                ir.Let(
+                    colour.name,
+                    ir.Binary(VEC3, "/", self.element(light, light.names[COLOUR], VEC3, suffix), falloff),
+                ),
             ],
             direction,
             colour,
@@ -242,3 +324,7 @@ def _single(value: float) -> float:
 
 def _vector(value: Sequence[float]) -> ir.Expr:
     return ir.Construct(VEC3, tuple(ir.Const(F32, _single(x)) for x in value))
+
+
+def _array(values: Sequence[Sequence[float]]) -> ir.Expr:
+    return ir.Construct(array_of(VEC3, len(values)), tuple(map(_vector, values)))

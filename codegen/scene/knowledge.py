@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from codegen.ir.domains import Interval
-from codegen.ir.types import BOOL, F32, Vector
+from codegen.ir.types import BOOL, F32, Array, Vector
 from codegen.scene.document import Scene
 from codegen.scene.general import General
 from codegen.scene.model import COLOUR, LIGHT, Slot
@@ -15,7 +15,7 @@ from codegen.scene.settings import Alias, Constant, Range
 from codegen.scene.sites import Known
 
 Number = float | int | bool
-Given = Number | tuple[Number, ...]
+Given = Number | tuple[Number, ...] | list["Given"]
 
 
 @dataclass(frozen=True)
@@ -37,18 +37,24 @@ def knowledge(scene: Scene, general: General) -> Knowledge:
             known.constants[name] = given(slot, setting.value)
         elif isinstance(setting, Alias):
             known.aliases[name] = _target(general, name, setting.path)
-        elif isinstance(setting, Range):
+        elif isinstance(setting, Range) and not isinstance(slot.type, Array):
             known.ranges[name] = min(setting.low), max(setting.high)
     colour = scene.lights.constant_colour
     if colour is not None:
         for light in general.lights:
             if COLOUR in light.names:
-                known.constants[light.names[COLOUR]] = tuple(float(np.float32(x)) for x in colour)
+                name = light.names[COLOUR]
+                known.constants[name] = given(
+                    general.slots[name], tuple(float(np.float32(x)) for x in colour)
+                )
     return known
 
 
 def given(slot: Slot, value: tuple[float, ...]) -> Given:
     """A constant in the slot's own type."""
+    if isinstance(slot.type, Array):
+        one = given(replace(slot, type=slot.type.element), value)
+        return [one] * slot.type.size
     element = slot.type.element if isinstance(slot.type, Vector) else slot.type
     kind = bool if element == BOOL else float if element == F32 else int
     numbers = tuple(kind(x) for x in value)

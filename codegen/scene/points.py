@@ -6,8 +6,8 @@ edges of what [view] allows and at the horizon; ends of ranges, zeros and their 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ import numpy.typing as npt
 from codegen.errors import UserError
 from codegen.evaluate.arrays import Value
 from codegen.ir.domains import Interval, Length, Unit
-from codegen.ir.types import Vector
+from codegen.ir.types import Array, Vector
 from codegen.scene.document import Scene
 from codegen.scene.general import General
 from codegen.scene.model import LIGHT, Slot
@@ -73,19 +73,20 @@ def _fits(scene: Scene, general: General, inputs: Inputs) -> npt.NDArray[np.bool
     keep = np.ones(len(next(iter(inputs.values()))), np.bool_)
     for (a, b), (low, high) in scene.facts.items():
         for x, y in _pairs(names, a, b):
-            first, second = _direction(inputs, general, x), _direction(inputs, general, y)
-            cosine = (first * second).sum(axis=1)
-            keep &= (cosine >= low) & (cosine <= high)
+            first, second = _directions(inputs, x), _directions(inputs, y)
+            cosine = (first * second).sum(axis=2)
+            keep &= ((cosine >= low) & (cosine <= high)).all(axis=1)
     return keep
 
 
-def _direction(inputs: Inputs, general: General, name: str) -> Floats:
-    """A direction by parameter; that to a point light from its position."""
+def _directions(inputs: Inputs, name: str) -> Floats:
+    """The directions of a parameter, (N, size, 3); those to point lights from their positions."""
     value = np.asarray(inputs[name], np.float64)
+    value = value[:, None] if value.ndim == 2 else value
     if not name.startswith("light_position"):
         return value
-    offset = value - np.asarray(inputs["position"], np.float64)
-    return np.asarray(offset / np.linalg.norm(offset, axis=1)[:, None])
+    offset = value - np.asarray(inputs["position"], np.float64)[:, None]
+    return np.asarray(offset / np.linalg.norm(offset, axis=2)[:, :, None])
 
 
 def _names(general: General) -> dict[str, list[str]]:
@@ -127,25 +128,33 @@ class _Drawing:
         order = {"n": 0, "t": 1, "v": 2}
         for slot in sorted(directions, key=lambda s: order.get(s.path, 3)):
             if slot.path == slot.name or slot.path in self.general.shared:
-                self.known[self.general.shared.get(slot.path, slot.name)] = self.direction(slot)
+                self.known[self.general.shared.get(slot.path, slot.name)] = self.each(slot, self.direction)
         found: Inputs = {}
         for name, slot in self.general.slots.items():
             if isinstance(slot.domain, Unit):
                 if name not in self.known:
-                    self.known[name] = self.direction(slot)
+                    self.known[name] = self.each(slot, self.direction)
                 found[name] = self.known[name].astype(np.float32)
             elif slot.name == "position":
                 found[name] = self.random.uniform(-POSITIONS, POSITIONS, (self.count, 3)).astype(np.float32)
             elif not name.startswith("light_position"):
-                found[name] = self.value(slot, name)
-        for name in self.general.slots:
+                found[name] = self.each(slot, self.value)
+        for name, slot in self.general.slots.items():
             if name.startswith("light_position"):
-                found[name] = self.light_position(np.asarray(found["position"], np.float64))
+                position = np.asarray(found["position"], np.float64)
+                found[name] = self.each(slot, lambda _, at=position: self.light_position(at))  # type: ignore[misc]
         for name, slot in self.general.slots.items():
             setting = self.scene.settings.get(slot.path)
             if isinstance(setting, Alias) and setting.path in self.general.shared:
                 found[name] = found[self.general.shared[setting.path]]
         return {name: found[name] for name in self.general.slots}
+
+    def each(self, slot: Slot, make: Callable[[Slot], Any]) -> Any:
+        """A value, or one for each element of an array, (N, size) or (N, size, 3)."""
+        if not isinstance(slot.type, Array):
+            return make(slot)
+        one = replace(slot, type=slot.type.element)
+        return np.stack([make(one) for _ in range(slot.type.size)], axis=1)
 
     def light_position(self, position: Floats) -> npt.NDArray[np.float32]:
         low, high = self.scene.lights.distance
@@ -157,7 +166,8 @@ class _Drawing:
         setting = self.scene.settings.get(slot.path)
         if isinstance(setting, Constant):
             return np.broadcast_to(np.asarray(setting.value), (self.count, 3))
-        return self.toward("l" if slot.path.startswith("l") and slot.path[1:2] in ("", "_") else slot.path)
+        to_light = {light.names.get(LIGHT) for light in self.general.lights}
+        return self.toward(LIGHT if slot.path in to_light else slot.path)
 
     def toward(self, path: str) -> Floats:
         """Directions for a role: around the normal as the facts say, hard ones near the hair or its cone."""
@@ -195,7 +205,7 @@ class _Drawing:
         found = self.random.normal(size=(self.count, 3))
         return np.asarray(found / np.linalg.norm(found, axis=1)[:, None])
 
-    def value(self, slot: Slot, name: str) -> Value:
+    def value(self, slot: Slot) -> Value:
         setting = self.scene.settings.get(slot.path)
         shape = (self.count, slot.type.size) if isinstance(slot.type, Vector) else (self.count,)
         if isinstance(setting, Constant):

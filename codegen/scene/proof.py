@@ -16,17 +16,21 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.evaluate.arrays import Value
 from codegen.execute import execute
 from codegen.intervals import DEFAULT_TABLES, permitted
+from codegen.ir import nodes as ir
 from codegen.library import Library
 from codegen.scene.errors import Floats, Measured, as_floats, distance
 from codegen.scene.points import Points
 
 JUDGED = 16_384
 """Results that are judged by intervals, those farthest apart first; equal results need no judgement."""
+
+
+Results = dict[tuple[str, tuple[ir.Stmt, ...]], Floats]
+"""Results over one set of points by where they were computed and by the function's body."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +77,7 @@ def prove(
     target: str,
     runtime: Any,
     budget: float,
+    done: Results,
 ) -> Proof:
     """Execute both over the points.
 
@@ -80,11 +85,12 @@ def prove(
     exact    the general function's values in float64
     runtime  of the target; None: the float32 evaluation
     budget   largest absolute error; 0: by intervals
+    done     results of earlier proofs over the same points, and those of this one
     """
     begin = time.perf_counter()
-    before = as_floats(_run(library, general, points.inputs, runtime))
+    before = _results(library, general, points, target, runtime, done)
     own = {p.name: points.inputs[p.name] for p in library.function(special).parameters}
-    after = as_floats(_run(library, special, own, runtime, points.count))
+    after = _results(library, special, points, target, runtime, done)
     seconds = time.perf_counter() - begin
     different = (before != after).any(axis=1)
     judged, outside, first = 0, 0, ""
@@ -107,14 +113,16 @@ def prove(
     )
 
 
-def _run(
-    library: Library, name: str, inputs: Mapping[str, Value], runtime: Any, count: int | None = None
-) -> Value:
-    if not inputs and count is not None:  # nothing varies: one value for all
-        raise UserError("every parameter is a constant: the scene has one colour, and needs no function")
-    if runtime is None:
-        return evaluate(library, name, inputs, "float32")
-    return execute(library, name, inputs, runtime)
+def _results(library: Library, name: str, points: Points, target: str, runtime: Any, done: Results) -> Floats:
+    f = library.function(name)
+    key = "float32" if runtime is None else target, f.body
+    if key not in done:
+        inputs = {p.name: points.inputs[p.name] for p in f.parameters}
+        if runtime is None:
+            done[key] = as_floats(evaluate(library, name, inputs, "float32"))
+        else:
+            done[key] = as_floats(execute(library, name, inputs, runtime))
+    return done[key]
 
 
 def _judged(

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from codegen.evaluate.arrays import Value
 from codegen.ir import nodes as ir
 from codegen.library import Library
 from codegen.passes.operations import operations
@@ -18,11 +17,11 @@ from codegen.passes.powers import LARGEST, ROWS
 from codegen.passes.specialise import Specialised, specialise
 from codegen.passes.text import show
 from codegen.scene.drops import terms, without
-from codegen.scene.errors import MARGIN, Measured, Reference
+from codegen.scene.errors import Measured, Reference
 from codegen.scene.general import General
 from codegen.scene.knowledge import Knowledge
+from codegen.scene.lights import UNROLLED
 from codegen.scene.loosen import BUNDLES, loosened
-from codegen.scene.points import Points
 from codegen.scene.prices import Prices
 from codegen.scene.search import Found, Search
 from codegen.scene.sites import Path
@@ -30,8 +29,6 @@ from codegen.scene.sites import Path
 SMALLEST_GAIN = 0.005
 """Share of the price that a form has to save to be worth its error."""
 MOST_DROPS = 4
-SCREEN = 3000
-"""Points that a term is tried on before all of them are asked."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +102,7 @@ class Reducer:
                 known.facts,
                 new_name=self.name,
                 powers=powers,
+                unroll=UNROLLED,
             )
         return self._made[key]
 
@@ -130,17 +128,20 @@ class Reducer:
         body = made.function.body
         if body not in self._errors:
             library = self.library.with_functions([made.function])
-            self._errors[body] = self.reference.error(library, made.function.name, self.inputs(made))
+            self._errors[body] = self.reference.error(library, made.function.name)
         return self._errors[body]
 
-    def inputs(self, made: Specialised) -> dict[str, Value]:
-        """The points as inputs of a specialised function."""
-        return {p.name: self.reference.points.inputs[p.name] for p in made.function.parameters}
+    def passes(self, function: ir.Function, budget: float) -> bool:
+        """Whether the budget holds the error of a function over the few first points."""
+        library = self.library.with_functions([function])
+        return self.search.screen.error(library, function.name).fits(budget)
 
     def fits(self, made: Specialised, budget: float) -> Measured | None:
         """The error of a function where the budget holds it."""
+        if made.function.body not in self._errors and not self.passes(made.function, budget):
+            return None
         error = self.error(made)
-        return error if error.finite and error.largest * MARGIN <= budget else None
+        return error if error.fits(budget) else None
 
     def powers(self, exact: Specialised, budget: float, changes: list[Change]) -> int:
         """Whole exponents as multiplications, where there are any and the budget holds their error."""
@@ -190,16 +191,13 @@ class Reducer:
         return made
 
     def drop(self, made: Specialised, prices: Prices, budget: float) -> tuple[Specialised, Change] | None:
-        points = self.reference.points
-        few = _first(points, SCREEN)
-        screen = Reference(few, self.reference.exact[:SCREEN], self.reference.single[:SCREEN])
-        given = {p.name: few.inputs[p.name] for p in made.function.parameters}
+        few = self.search.screen.points.inputs
+        given = {p.name: few[p.name] for p in made.function.parameters}
         price = prices.body(made.function)
         best: tuple[float, Specialised, Change] | None = None
         for term in terms(self.library, made.function, given):
             replaced = without(made.function, term)
-            library = self.library.with_functions([replaced])
-            if screen.error(library, replaced.name, given).largest * MARGIN > budget:
+            if not self.passes(replaced, budget):
                 continue
             candidate = self.cleaned(replaced)
             gain = price - prices.body(candidate.function)
@@ -223,16 +221,11 @@ class Reducer:
         library = self.library.with_functions([function])
         names = {p.name for p in function.parameters}
         facts = [f for f in self.knowledge.facts if all(n in names for n in _named(f[0]))]
-        return specialise(library, function.name, facts=facts, new_name=self.name)
+        return specialise(library, function.name, facts=facts, new_name=self.name, unroll=UNROLLED)
 
 
 def _named(expression: str) -> list[str]:
     return [part.strip() for part in expression.removeprefix("dot(").removesuffix(")").split(",")]
-
-
-def _first(points: Points, count: int) -> Points:
-    inputs = {name: value[:count] for name, value in points.inputs.items() if not isinstance(value, dict)}
-    return Points(dict(inputs), min(count, points.count), points.hard[:count])
 
 
 def _variants(found: Found, prices: Prices) -> Sequence[Change]:

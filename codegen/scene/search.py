@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from codegen.ir import nodes as ir
 from codegen.library import Library
-from codegen.scene.errors import MARGIN, Measured, Reference
+from codegen.scene.errors import Measured, Reference
 from codegen.scene.general import General
 from codegen.scene.prices import Prices
 from codegen.scene.sites import Choices, Known, Path, Site, sites, substituted
@@ -55,20 +55,24 @@ class Search:
     general: General
     reference: Reference
     known: Known
-    _errors: dict[tuple[tuple[Path, str], ...], Measured] = field(default_factory=dict)
+    _errors: dict[tuple[bool, tuple[tuple[Path, str], ...]], Measured] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.screen = self.reference.screen()
 
     @property
     def model(self) -> ir.Function:
         """The shading function, whose call sites are searched."""
         return self.library.function(self.general.model)
 
-    def error(self, choices: Choices) -> Measured:
-        """The joint error of choices, made for every light."""
-        key = tuple(sorted(choices.items()))
+    def error(self, choices: Choices, *, screened: bool = False) -> Measured:
+        """The joint error of choices, made for every light; over few points where that will do."""
+        key = screened, tuple(sorted(choices.items()))
         if key not in self._errors:
             made = self.functions(choices, "scene_candidate")
             extended = self.library.with_functions(made)
-            self._errors[key] = self.reference.error(extended, made[-1].name)
+            reference = self.screen if screened else self.reference
+            self._errors[key] = reference.error(extended, made[-1].name)
         return self._errors[key]
 
     def functions(self, choices: Choices, name: str) -> list[ir.Function]:
@@ -128,12 +132,14 @@ class Search:
         """The best offer whose joint error fits, with the better ones that do not."""
         ranked = []
         for saving, site, option in offers:
-            joint = self.error(_taken(choices, site.path, option))
+            joint = self.error(_taken(choices, site.path, option), screened=True)
             ranked.append((rank(saving, joint.largest), saving, joint, site, option))
         ranked.sort(key=lambda entry: (-entry[0], entry[3].path, entry[4]))
         refused: list[str] = []
         for _, saving, joint, site, option in ranked:
-            if joint.finite and joint.largest * MARGIN <= budget:
+            if joint.fits(budget):
+                joint = self.error(_taken(choices, site.path, option))
+            if joint.fits(budget):
                 return Substitution(
                     site.path, site.caller, site.callee, option, saving, joint.largest, tuple(refused)
                 )

@@ -54,6 +54,8 @@ def read_settings(table: Table, model: Model, lights: Lights) -> dict[str, Setti
         if key not in known:
             raise table.error(f'"{key}"', f"{model.function.name} has no such parameter{nearest(key, known)}")
         found[key] = _setting(table, key, known[key], known)
+        if isinstance(found[key], Alias) and key in lights.per_light:
+            raise table.error(f'"{key}"', "is in per_light: each light has its own, so it equals no other")
     return {path: _resolved(table, path, found, known) for path in found}
 
 
