@@ -25,7 +25,7 @@ def view(library: Library, report: Mapping[str, Any]) -> dict[str, Any]:
     for number, result in enumerate(results):
         for entry in result["functions"]:
             base = entry["base"]
-            group = groups.setdefault(base, {**_about(library, base), "entries": []})
+            group = groups.setdefault(base, {**_about(library, base), "entries": [], "open": {}})
             shown = _entry(result, entry)
             shown["driver"] = number
             shown["front"] = [
@@ -35,6 +35,9 @@ def view(library: Library, report: Mapping[str, Any]) -> dict[str, Any]:
                 if entry["name"] in on_front.get((label(result), base, mode, unit), ())
             ]
             group["entries"].append(shown)
+        for measured in result["groups"]:
+            for mode, data in measured["modes"].items():
+                groups[measured["base"]]["open"][f"{number} {mode}"] = data["undecided"]
     return {
         "drivers": [{"label": label(r), **_device(r)} for r in results],
         "modes": [mode for mode in MODES if any(mode in f["speed"] for r in results for f in r["functions"])],

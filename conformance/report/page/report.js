@@ -52,6 +52,8 @@ function ticks([low, high]) {
   return { tickmode: "array", tickvals: vals, ticktext: vals.map((v) => Number(v.toPrecision(2)).toLocaleString("en", { maximumSignificantDigits: 2 })) };
 }
 
+const decades = ([low, high]) => Math.max(1, Math.ceil((high - low) / 6));
+
 /* Beside or under its mark, where it covers no other mark, bar or label. */
 function labelPlaces(plot, x, y, xs, ys, tops, tags) {
   const width = Math.max(plot.clientWidth - 70, 100), tall = Math.max(plot.clientHeight - 54, 100);
@@ -125,7 +127,7 @@ function drawCard(card) {
   if (x[1] - x[0] < 0.6) { const mid = (x[0] + x[1]) / 2; x[0] = mid - 0.3; x[1] = mid + 0.3; }
   const plan = layout(
     axes(`ns per evaluation, ${state.mode}`, { type: "log", range: x, ...ticks(x) }),
-    axes(UNITS[state.unit], { type: "log", range: y, dtick: y[1] - y[0] > 5 ? 2 : 1, exponentformat: "power" }),
+    axes(UNITS[state.unit], { type: "log", range: y, dtick: decades(y), exponentformat: "power" }),
   );
   halfStep(plan);
   const front = entries.filter((e) => e.front.includes(`${state.mode} ${state.unit}`))
@@ -166,10 +168,10 @@ function drawOverview() {
   }
   const plot = document.getElementById("overview-plot");
   const xs = points.map((e) => e.speed[state.mode].ratio), ys = points.map(height);
-  const across = logRange([...xs, 1], 0.05);
+  const across = logRange([...xs, 1], 0.05), up = logRange(ys.length ? ys : [1], 0.06);
   const plan = layout(
     axes(`time relative to the default form, ${state.mode}`, { type: "log", range: across, ...ticks(across) }),
-    axes(UNITS[state.unit], { type: "log", range: logRange(ys.length ? ys : [1], 0.06), dtick: narrow.matches ? 2 : 1, exponentformat: "power" }),
+    axes(UNITS[state.unit], { type: "log", range: up, dtick: decades(up), exponentformat: "power" }),
   );
   halfStep(plan);
   plan.shapes.push({ type: "line", yref: "paper", y0: 0, y1: 1, x0: 1, x1: 1, line: { color: colour("soft"), width: 1 } });
@@ -198,18 +200,26 @@ function list(card, group) {
     const s = e.speed[state.mode], error = e.errors?.[state.unit];
     add("dt", e.name);
     add("dd", `${number(s.net)} ns, quartiles ${s.quartiles.map(number).join(" and ")}` +
-      (s.ratio === null ? "" : `; ${number(s.ratio)} times the default, quartiles ${number(s.low)} and ${number(s.high)}`));
+      (s.ratio === null || e.kind === "base" ? "" : `; ${number(s.ratio)} times the default, quartiles ${number(s.low)} and ${number(s.high)}`));
     if (error) {
       const unit = state.unit === "ulp" ? "ULP" : "8-bit steps";
-      add("dd", `at most ${number(error.max)} ${unit} on ${e.inputs} inputs; permitted ${permitted(error)}`);
+      add("dd", `at most ${number(error.max)} ${unit} on ${e.inputs.toLocaleString("en")} inputs (${e.domain})`);
+      if (error.guaranteed !== null) add("dd", `the specification (${e.table}) permits ${permitted(error)}`);
+      add("dd", "worst input, words in hex, and what replays it in the folder of this report:");
       add("dd", error.words, true);
       add("dd", e.replay, true);
     }
     if (e.not_finite) add("dd", `${e.not_finite} results are not finite`);
+    add("dd", "measure again:");
     add("dd", e.again, true);
     add("dd", `${e.lanes > 1 ? `${e.lanes} work items at once` : e.lanes === 1 ? "one work item at a time" : "work items at once: not known"}, ${e.vectorised}`);
     return one;
   }));
+  const open = group.open[`${state.driver} ${state.mode}`] ?? [];
+  if (open.length) {
+    const text = `Not decided which is faster: ${open.map((pair) => pair.join(" or ")).join("; ")}.`;
+    holder.prepend(Object.assign(document.createElement("p"), { textContent: text }));
+  }
 }
 
 /* ---------------------------------------------------------------- state */
