@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from typing import Any
 
 from codegen.costs import costs
+from codegen.guarantees import Guarantee, guarantees, phrase
 from codegen.half import HalfForm, half_forms
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain
@@ -34,7 +36,7 @@ def describe(library: Library, f: Function) -> list[str]:
     }
     kind = f" ({note[f.kind]})" if f.kind in note else ""
     lines = [signature(f), f"  {f.module}{kind}; {f.place.path}:{f.place.line}", "", f"  {f.doc.summary}", ""]
-    width = max((len(key) for key in [*f.doc.entries, "error"]), default=5)
+    width = max((len(key) for key in [*f.doc.entries, "guaranteed"]), default=5)
     for p in f.parameters:
         text = f.doc.entries.get(p.name, "")
         domain = domain_text(p.domain)
@@ -45,6 +47,9 @@ def describe(library: Library, f: Function) -> list[str]:
             lines.append(f"  {key.ljust(width)}  {text}")
     for bound in library.bounds.get(f.name, ()):
         lines.append(f"  {'error'.ljust(width)}  {bound.describe()} [{bound.origin}]")
+    for table, found in _guaranteed(library, f).items():
+        text = phrase(table, found, library.bounds.get(f.name, ()))
+        lines.append(f"  {'guaranteed'.ljust(width)}  {text}")
     form = half_forms(library).get(f.name)
     if form is not None:
         lines.append(f"  {'half'.ljust(width)}  {half_text(form)}")
@@ -59,6 +64,12 @@ def half_text(form: HalfForm) -> str:
     if form.refused:
         return f"none: {form.refused}" + (f"; use {form.instead}" if form.instead else "")
     return "; ".join(f"{b.describe()} [{b.origin}]" for b in form.bounds)
+
+
+def _guaranteed(library: Library, f: Function) -> Mapping[str, Guarantee]:
+    """Table -> guarantee; its errors go with the declared ones in turn. Empty for what was not surveyed."""
+    found = guarantees(library).get(f.name)
+    return {} if found is None else found.tables
 
 
 def operations(library: Library, f: Function) -> dict[str, int]:
@@ -129,6 +140,7 @@ def as_data(library: Library, f: Function) -> dict[str, Any]:
             }
             for b in library.bounds.get(f.name, ())
         ],
+        "guaranteed": {t: found.as_data() for t, found in _guaranteed(library, f).items()},
         "half": forms[f.name].as_data() if f.name in (forms := half_forms(library)) else None,
         "operations": operations(library, f),
         "cost": costs(library, f),

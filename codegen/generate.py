@@ -14,6 +14,7 @@ from codegen.emit.dialect import Dialect
 from codegen.emit.module import emit
 from codegen.errors import UserError
 from codegen.files import write_text
+from codegen.guarantee_page import page
 from codegen.library import default_root, load_library
 from codegen.ops.stub import generate as lang_stub
 from codegen.readme import with_generated_parts
@@ -32,6 +33,7 @@ def generated_files() -> Iterator[tuple[Path, str]]:
     for target in TARGETS:
         for d in dialects_of(target).values():
             yield root / "targets" / target / "include" / include_name(d), emit(library, d)
+    yield root / "shaderlib" / "GUARANTEES.md", page(library)
     readme = root / "README.md"
     yield readme, with_generated_parts(readme.read_text(encoding="utf-8"), library)
 

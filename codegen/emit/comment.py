@@ -10,7 +10,7 @@ from codegen.emit import wrap
 from codegen.ir import nodes as ir
 from codegen.ir.types import Field
 
-_TAIL = ("returns", "degenerate", "error", "form", "source")
+_TAIL = ("returns", "degenerate", "error", "guaranteed", "form", "source")
 
 
 def renamer(names: Iterable[str], prefix: str) -> Callable[[str], str]:
@@ -25,9 +25,12 @@ def renamer(names: Iterable[str], prefix: str) -> Callable[[str], str]:
 
 
 def function_comment(
-    f: ir.Function, bounds: Iterable[Bound], target: str, rename: Callable[[str], str]
+    f: ir.Function, bounds: Iterable[Bound], target: str, rename: Callable[[str], str], guaranteed: str = ""
 ) -> list[str]:
-    """The comment lines of one function."""
+    """The comment lines of one function.
+
+    guaranteed  what the specification of this text promises of it; empty where that was not surveyed
+    """
     entries = dict(f.doc.entries)
     for p in f.parameters:
         described = p.domain.describe() if p.domain is not None else ""
@@ -35,6 +38,8 @@ def function_comment(
     errors = [b.describe() for b in bounds if not b.targets or target in b.targets]
     if errors:
         entries["error"] = "; ".join(errors)
+    if guaranteed:
+        entries["guaranteed"] = guaranteed
     order = [p.name for p in f.parameters] + [key for key in _TAIL if key in entries]
     note = {"variant": f"Variant of {f.base}.", "printed": f"As the lecture prints it; right: {f.base}."}
     summary = " ".join(filter(None, (f.doc.summary, note.get(f.kind, ""))))

@@ -9,6 +9,7 @@ from codegen.bounds import Bound
 from codegen.emit import comment, wrap
 from codegen.emit.dialect import Dialect
 from codegen.emit.stmt import StmtPrinter
+from codegen.guarantees import guarantees, phrase, table_of
 from codegen.half import check_half, half_forms, half_hash, half_rules
 from codegen.ir.nodes import StructDef
 from codegen.ir.unit import Unit
@@ -76,9 +77,9 @@ def emit_selection(library: Library, dialect: Dialect, selection: Selection, pre
         blocks.append([*comment.struct_comment(original, rename), *printer.struct(renamed.type)])
     for version, f in zip(versions, unit.functions, strict=True):
         bounds = bounds_of(library, version)
-        blocks.append(
-            [*comment.function_comment(version.source, bounds, dialect.target, rename), *printer.function(f)]
-        )
+        promised = guaranteed_of(library, version, dialect)
+        words = comment.function_comment(version.source, bounds, dialect.target, rename, promised)
+        blocks.append([*words, *printer.function(f)])
     lines: list[str] = []
     for block in blocks:
         lines += [*block, ""]
@@ -91,6 +92,15 @@ def bounds_of(library: Library, version: Version) -> Sequence[Bound]:
         return library.bounds.get(version.source.name, ())
     form = half_forms(library).get(version.source.name)
     return () if form is None else form.bounds
+
+
+def guaranteed_of(library: Library, version: Version, dialect: Dialect) -> str:
+    """What the comment states of a function's guarantee; empty where none was surveyed."""
+    found = guarantees(library).get(version.source.name)
+    if found is None or version.is_half:
+        return ""
+    table, bounds = table_of(dialect), library.bounds.get(version.source.name, ())
+    return phrase(table, found.tables[table], bounds, dialect.target) if table in found.tables else ""
 
 
 def _versions(library: Library, dialect: Dialect, selection: Selection) -> tuple[Version, ...]:
@@ -138,7 +148,8 @@ def _header(dialect: Dialect, source_hash: str, names: Sequence[str] | None, pre
         *wrap.comment(
             "Directions are unit vectors that point away from the shaded point: l to the light, v to the "
             "viewer; t is the strand tangent from root to tip, n the surface normal. Angles are in radians, "
-            "colours linear RGB. Finite input inside the stated domain gives a finite result.",
+            "colours linear RGB. Finite input inside the stated domain gives a finite result. An error is "
+            "declared: no driver measured exceeds it; guaranteed is what the specification permits at worst.",
             "// ",
             "// ",
         ),

@@ -1,10 +1,10 @@
 """What each specification guarantees of each function: the share of its domain, and the error it then has.
 
-`python -m conformance.guarantees` writes guarantees.json anew and lists what WGSL does not guarantee;
-`--check` fails if the file is out of date.
+`python -m conformance.guarantees` surveys what changed since shaderlib/guarantees.json was written, `--all`
+everything; `--check` surveys everything and fails if the file is out of date.
 """
 
-from conformance.guarantees.survey import Guarantee, survey
-from conformance.guarantees.table import PATH, read
+from conformance.guarantees.survey import survey
+from conformance.guarantees.table import PATH, read, stale
 
-__all__ = ["PATH", "Guarantee", "read", "survey"]
+__all__ = ["PATH", "read", "stale", "survey"]

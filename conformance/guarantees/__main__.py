@@ -1,4 +1,4 @@
-"""Measures the guarantees, writes or checks guarantees.json, and lists what WGSL leaves open."""
+"""Surveys the guarantees, writes or checks shaderlib/guarantees.json, and lists what WGSL leaves open."""
 
 from __future__ import annotations
 
@@ -6,43 +6,53 @@ import sys
 
 from codegen.files import write_text
 from codegen.library import Library, load_library
-from conformance.guarantees.table import PATH, Guarantees, differences, measured, read, text
+from conformance.guarantees.table import PATH, Found, differences, read, stale, surveyed, text
 
 REPORTED = "wgsl"
+USAGE = "python -m conformance.guarantees [--all | --check | FUNCTION...]"
 
 
 def main(arguments: list[str]) -> int:
-    """`--check`: compare only; other arguments: names of functions, which are only reported."""
+    """No argument: survey what changed; names of functions: report only."""
+    options = [a for a in arguments if a.startswith("--")]
     names = [a for a in arguments if not a.startswith("--")]
+    if not set(options) <= {"--all", "--check"} or (options and names):
+        print(USAGE, file=sys.stderr)
+        return 2
     library = load_library()
-    found = measured(library, names)
-    print("\n".join(report(library, found)))
     if names:
+        print("\n".join(report(library, surveyed(library, names))))
         return 0
-    if "--check" in arguments:
-        changed = differences(read(), found)
-        print("\n".join(changed) or "guarantees.json is up to date")
+    before = read()
+    if "--check" in options:
+        changed = differences(before, surveyed(library, library.public))
+        print("\n".join(changed) or f"{PATH.name} is up to date")
         return 1 if changed else 0
-    write_text(PATH, text(found))
+    renewed = surveyed(library, library.public if options else stale(library, before))
+    found = {name: renewed.get(name, before.get(name)) for name in library.public}
+    whole = {name: entry for name, entry in found.items() if entry is not None}
+    print("\n".join(report(library, whole)))
+    print(f"surveyed {len(renewed)} functions")
+    write_text(PATH, text(whole))
     return 0
 
 
-def report(library: Library, found: Guarantees) -> list[str]:
+def report(library: Library, found: Found) -> list[str]:
     """Share guaranteed per section, then every function that is not guaranteed everywhere, with causes."""
     lines = [f"guaranteed under {REPORTED}: random points, hard cases"]
     sections: dict[str, list[str]] = {}
     for name in found:
         sections.setdefault(library.function(name).module, []).append(name)
     for section, names in sections.items():
-        rows = [found[name][REPORTED] for name in names]
+        rows = [found[name].tables[REPORTED] for name in names]
         whole = sum(r.everywhere for r in rows)
         uniform, hard = (sum(getattr(r, k) for r in rows) / len(rows) for k in ("uniform", "hard"))
         lines.append(f"  {section:10} {uniform:.4f} {hard:.4f}  everywhere: {whole} of {len(rows)} functions")
-    for name, by_table in found.items():
-        g = by_table[REPORTED]
-        if not g.everywhere:
-            lines.append(f"{name}: {g.uniform:.4f} {g.hard:.4f}")
-            lines += [f"    {share:8.2g}  {what}" for what, share in g.causes.items()]
+    for name, entry in found.items():
+        for table, g in entry.tables.items():
+            if table == REPORTED and not g.everywhere:
+                lines.append(f"{name}: {g.uniform:.4f} {g.hard:.4f}")
+                lines += [f"    {share:8.2g}  {what}" for what, share in g.causes.items()]
     return lines
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from codegen.guarantees import Guarantee
 from codegen.intervals import permitted
 from codegen.library import Library
 from conformance.check import measure
@@ -22,27 +23,6 @@ FAMILY_COUNT = 250
 """Points from each family of hard cases."""
 TARGETS = {"wgsl": "wgsl", "opencl": "opencl", "opencl_relaxed": "opencl"}
 """The target whose bounds a table is held against; glsl for all others."""
-
-
-@dataclass
-class Guarantee:
-    """What a table guarantees of a function, on the inputs that were drawn.
-
-    uniform  share of the random points of the domain whose result is bounded
-    hard     the same of all hard cases
-    errors   for each declared bound, the largest error that a permitted result has; None where the bound met
-             no guaranteed input
-    causes   cause -> share of all inputs that it leaves without a guarantee
-    """
-
-    uniform: float
-    hard: float
-    errors: list[float | None] = field(default_factory=list)
-    causes: dict[str, float] = field(default_factory=dict)
-
-    @property
-    def everywhere(self) -> bool:
-        return self.uniform == 1.0 and self.hard == 1.0
 
 
 @dataclass(frozen=True)

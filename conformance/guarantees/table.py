@@ -1,89 +1,93 @@
-"""guarantees.json: function -> table -> guarantee; writing, reading, comparing."""
+"""shaderlib/guarantees.json: function -> table -> guarantee; writing, comparing, telling what is stale."""
 
 from __future__ import annotations
 
+import hashlib
 import json
-import math
-from collections.abc import Mapping
-from pathlib import Path
+import re
+from collections.abc import Iterable, Mapping
 
-from codegen.intervals import TABLES
-from codegen.library import Library
-from conformance.guarantees.survey import Guarantee, drawn_for, survey
+from codegen.guarantees import SPECIFICATIONS, SURVEYED, Guarantee, Surveyed, guarantees
+from codegen.library import Library, default_root, load_library
+from conformance.guarantees.survey import drawn_for, survey
 
-PATH = Path(__file__).with_name("guarantees.json")
+PATH = default_root() / SURVEYED
 SHARE_TOLERANCE = 2e-3
 """Shares that differ by less count as equal: lanes near a threshold depend on float64's last bits."""
 ERROR_TOLERANCE = 0.06
 """The same for errors, relative: two significant digits, rounded up."""
 
-Guarantees = dict[str, dict[str, Guarantee]]
+Found = Mapping[str, Surveyed]
 
 
-def measured(library: Library, names: list[str] | None = None) -> Guarantees:
-    """The guarantees of all public functions, or of some, under all tables."""
-    found: Guarantees = {}
-    for name in names or list(library.public):
+def read() -> Found:
+    """The guarantees on file."""
+    return guarantees(load_library())
+
+
+def surveyed(library: Library, names: Iterable[str]) -> dict[str, Surveyed]:
+    """The guarantees of some functions under all tables."""
+    found = {}
+    for name in names:
         drawn = drawn_for(library, name)
-        found[name] = {table: survey(library, name, table, drawn) for table in TABLES}
+        tables = {table: survey(library, name, table, drawn) for table in SPECIFICATIONS}
+        found[name] = Surveyed(meaning(library, name), tables)
     return found
 
 
-def text(guarantees: Guarantees) -> str:
+def meaning(library: Library, name: str) -> str:
+    """A hash of what a function computes and of the bounds it is held to; words and places do not count."""
+    digest = hashlib.sha256()
+    for f in library.select([name]).functions:
+        shown = (
+            f"{f.name} {[(p.name, p.type.name, p.domain) for p in f.parameters]} {f.returns.name} {f.body}"
+        )
+        digest.update(re.sub(r"\bline=\d+", "", shown).encode())
+    for b in library.bounds.get(name, ()):
+        where = sorted(b.where.items())
+        digest.update(f"{b.measure} {b.floor} {where} {b.field} {b.targets}".encode())
+    return digest.hexdigest()[:12]
+
+
+def stale(library: Library, found: Found) -> list[str]:
+    """Public functions that the file lacks or knows in another form."""
+    return [n for n in library.public if n not in found or found[n].of != meaning(library, n)]
+
+
+def text(found: Found) -> str:
     """The file: one line for each function and table."""
     blocks = []
-    for name, by_table in guarantees.items():
-        rows = [f"    {json.dumps(t)}: {json.dumps(_as_data(g))}" for t, g in by_table.items()]
-        blocks.append(f"  {json.dumps(name)}: {{\n" + ",\n".join(rows) + "\n  }")
+    for name, entry in found.items():
+        rows = [f"      {json.dumps(t)}: {json.dumps(g.as_data())}" for t, g in entry.tables.items()]
+        body = ",\n".join(rows)
+        blocks.append(f'  {json.dumps(name)}: {{"of": "{entry.of}", "tables": {{\n{body}\n    }}}}')
     return "{\n" + ",\n".join(blocks) + "\n}\n"
 
 
-def _as_data(g: Guarantee) -> dict[str, object]:
-    data: dict[str, object] = {"uniform": g.uniform, "hard": g.hard, "errors": [_number(e) for e in g.errors]}
-    if g.causes:
-        data["causes"] = g.causes
-    return data
-
-
-def _number(x: float | None) -> float | str | None:
-    return "inf" if x is not None and math.isinf(x) else x
-
-
-def read(path: Path = PATH) -> Guarantees:
-    """The guarantees on file."""
-    data = json.loads(path.read_text(encoding="utf-8"))
-    return {
-        name: {
-            table: Guarantee(
-                row["uniform"],
-                row["hard"],
-                [None if e is None else float(e) for e in row["errors"]],
-                row.get("causes", {}),
-            )
-            for table, row in by_table.items()
-        }
-        for name, by_table in data.items()
-    }
-
-
-def differences(old: Mapping[str, Mapping[str, Guarantee]], new: Guarantees) -> list[str]:
+def differences(old: Found, new: Found) -> list[str]:
     """What differs by more than the tolerances, one sentence each."""
     found = [f"{name}: no longer there" for name in old if name not in new]
-    for name, by_table in new.items():
-        for table, g in by_table.items():
-            before = old.get(name, {}).get(table)
+    for name, entry in new.items():
+        for table, g in entry.tables.items():
+            before = old[name].tables.get(table) if name in old else None
             if before is None:
                 found.append(f"{name} under {table}: not on file")
-                continue
-            for what in ("uniform", "hard"):
-                was, now = getattr(before, what), getattr(g, what)
-                if abs(was - now) > SHARE_TOLERANCE:
-                    found.append(f"{name} under {table}: guaranteed share ({what}) {was} became {now}")
-            same = len(before.errors) == len(g.errors) and all(
-                _close(a, b) for a, b in zip(before.errors, g.errors, strict=True)
-            )
-            if not same:
-                found.append(f"{name} under {table}: guaranteed errors {before.errors} became {g.errors}")
+            else:
+                found += [f"{name} under {table}: {what}" for what in _changes(before, g)]
+    return found
+
+
+def _changes(before: Guarantee, g: Guarantee) -> list[str]:
+    found = []
+    for what in ("uniform", "hard"):
+        was, now = getattr(before, what), getattr(g, what)
+        if abs(was - now) > SHARE_TOLERANCE:
+            found.append(f"guaranteed share ({what}) {was} became {now}")
+    same = len(before.errors) == len(g.errors) and all(
+        _close(a, b) for a, b in zip(before.errors, g.errors, strict=True)
+    )
+    if not same:
+        found.append(f"guaranteed errors {list(before.errors)} became {list(g.errors)}")
     return found
 
 

@@ -2,7 +2,7 @@
 
 from shaderlib.constants import EXP_LIMIT, ONE_BELOW
 from shaderlib.domains import CosineDefect, Exponent, ExponentFrom4, ExponentFrom8
-from shaderlib.lang import exp, f32, max, min, variant
+from shaderlib.lang import clamp, exp, f32, max, min, variant
 from shaderlib.numeric.log_one_minus import log_one_minus
 
 # Minimax in the absolute error of exp(-2 p z (1 + a z^2 + b z^4)), over all p >= 4 at once.
@@ -106,7 +106,8 @@ def pow_one_minus_from8(q: CosineDefect, p: ExponentFrom8) -> f32:
              under the lobe replace the series of the logarithm
     source   fitted for this library over all p >= 8
     """
-    return exp(-min(p * q * (1.0 + q * (FROM8_A + q * FROM8_B)), EXP_LIMIT))
+    inside = clamp(q, 0.0, 2.0)
+    return exp(-min(p * inside * (1.0 + inside * (FROM8_A + inside * FROM8_B)), EXP_LIMIT))
 
 
 @variant("pow_one_minus")
@@ -120,7 +121,8 @@ def pow_one_minus_cubic8(q: CosineDefect, p: ExponentFrom8) -> f32:
              power of a cubic
     source   fitted for this library over all p >= 8
     """
-    y = min(p * q * (1.0 + q * (CUBIC8_A + q * CUBIC8_B)), CUBIC8_LIMIT)
+    inside = clamp(q, 0.0, 2.0)
+    y = min(p * inside * (1.0 + inside * (CUBIC8_A + inside * CUBIC8_B)), CUBIC8_LIMIT)
     r = 1.0 + y * (CUBIC8_1 + y * (CUBIC8_2 + y * CUBIC8_3))
     r2 = r * r
     r4 = r2 * r2
