@@ -30,7 +30,7 @@ class IntervalResult:
 
     lanes         results that the table bounds
     inside        of these, the ones inside their interval
-    rearranged    outside as written, but inside once constants are moved as the specification allows
+    rearranged    outside as written, but inside after a rearrangement that the specification allows
     outside       not permitted
     unguaranteed  results that the table does not bound; they count for nothing
     excess        how far out the worst one is: its distance from the middle of its interval over half the

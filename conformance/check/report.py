@@ -72,7 +72,7 @@ def interval_text(r: FunctionResult) -> str:
     open_ = f"; {share(i.unguaranteed, r.lanes)} unguaranteed: the table bounds no result there"
     tail = open_ if i.unguaranteed else ""
     if i.rearranged:
-        tail += f"; {i.rearranged} by moving constants, as the specification allows"
+        tail += f"; {i.rearranged} only after a rearrangement that the specification allows"
     if i.verdict == UNGUARANTEED:
         return f"UNGUARANTEED: the {i.table} table bounds no result at all"
     if i.verdict == OUTSIDE:

@@ -109,7 +109,10 @@ def run_mode(
     cache: Path | None,
     progress: Progress,
 ) -> tuple[list[FunctionResult], list[str]]:
-    """One driver in one mode: its results, and what known failures no longer describe."""
+    """One driver in one mode: its results, and what known failures no longer describe.
+
+    cache  a folder that several runs share; None for a single one
+    """
     chosen = catalogue()[name]
     recorder = Recorder(plan.library, chosen, device, how, plan.today, plan.folder)
     done = set(recorder.current(plan.functions)) if plan.resume else set()

@@ -1,7 +1,8 @@
 """Sums and products with their constant moved inwards, as compilers do it.
 
 Mesa 22.3.6 turns (a + b) + c with a constant c into (a + c) + b, and the same for products; it does so across
-locals and the turns of a loop (conformance.programs.chains). WGSL, Vulkan and GLSL without `precise` allow
+locals and the turns of a loop (conformance.programs.chains), and factors interpolations for some drivers
+(conformance.programs.interpolated). WGSL, Vulkan and GLSL without `precise` allow
 rearrangement; the accuracy tables judge expressions as written. A result that only this explains is counted
 as rearranged, and is no failure.
 """
@@ -21,6 +22,7 @@ from codegen.ir.types import Vector
 from codegen.library import Library
 from conformance.programs.chains import chained, straightened
 from conformance.programs.extended import ExtendedLibrary
+from conformance.programs.interpolated import interpolated
 
 REARRANGING = frozenset({"glsl", "glsl_es", "vulkan", "wgsl", "opencl_relaxed"})
 """Accuracy tables of specifications that allow it."""
@@ -39,6 +41,10 @@ def explained(
         return np.zeros(1, np.bool_)
     functions = {f.name: _rearranged(f) for f in library.select([name]).functions}
     found = np.asarray(permitted(ExtendedLibrary(library, functions), name, inputs, chosen).contains(value))
+    if found.all():
+        return found
+    functions = {f.name: interpolated(f) for f in library.select([name]).functions}
+    found |= permitted(ExtendedLibrary(library, functions), name, inputs, chosen).contains(value)
     if found.all():
         return found
     straight = straightened(library, name)

@@ -18,6 +18,7 @@ from conformance.fuzz.source import write
 from conformance.metamorphic.pairs import columns
 from conformance.programs.chains import chained, straightened
 from conformance.programs.extended import ExtendedLibrary
+from conformance.programs.interpolated import interpolated
 from conformance.programs.rearranged import explained
 from conformance.unit.support.sources import library_of
 
@@ -52,6 +53,34 @@ def test_a_sum_through_a_loop_is_explained(table: str, tmp_path: Path) -> None:
     got = in_one_sum(inputs["x"])
     assert not permitted(library, "probe", inputs, table).contains(got).any(), "this needs no explanation"
     assert explained(library, "probe", inputs, "", got, table).all()
+
+
+MIXED = """def probe(c: X, a: X, b: X) -> f32:
+    return {sum}
+"""
+
+
+@pytest.mark.parametrize(
+    "sum_",
+    ["(1.0 - c) * a + c * b", "b * c + a * (1.0 - c)", "c * b + (1.0 - c) * a", "a * (1.0 - c) + c * b"],
+)
+def test_factored_interpolation_is_explained(sum_: str, tmp_path: Path) -> None:
+    """Softpipe's poulin_fournier_pdf where specular is just below 1."""
+    library = library_of(tmp_path, MIXED.format(sum=sum_))
+    below_one, third = np.float32(1.0 - 2.0**-24), np.float32(0.318309873)
+    inputs = {"c": np.array([below_one]), "a": np.array([third]), "b": np.array([0.0], np.float32)}
+    got = np.array([third + below_one * (np.float32(0.0) - third)], np.float32)
+    assert got[0] == 2.0**-25
+    assert not permitted(library, "probe", inputs, "glsl").contains(got).any()
+    assert explained(library, "probe", inputs, "glsl", got).all()
+    assert not explained(library, "probe", inputs, "glsl", 4.0 * got).any()
+    assert not explained(library, "probe", inputs, "opencl", got).any()
+
+
+@pytest.mark.parametrize("sum_", ["(1.0 - c) * a + b * b", "(2.0 - c) * a + c * b", "(1.0 + c) * a + c * b"])
+def test_other_sums_are_no_interpolations(sum_: str, tmp_path: Path) -> None:
+    function = library_of(tmp_path, MIXED.format(sum=sum_)).function("probe")
+    assert interpolated(function) == function
 
 
 def test_wrong_results_are_not_explained(tmp_path: Path) -> None:
