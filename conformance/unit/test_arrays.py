@@ -8,6 +8,8 @@ elements, and knows what facts say of every element.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -23,9 +25,11 @@ from codegen.ir.types import F32, I32, U32, VEC3, array_of, half_of, leaves
 from codegen.ir.verify import MalformedIRError, verify
 from codegen.kernels import kernel
 from codegen.library import load_library
+from codegen.passes.operations import operations
 from codegen.passes.specialise import specialise
+from conformance.cases.drawing import draw
 from conformance.unit.support.dialects import DIALECTS, ONE_PER_TARGET, dialect_id, validate
-from conformance.unit.support.lights import LIGHTS, inputs, lambert_sum
+from conformance.unit.support.lights import LANES, LIGHTS, inputs, lambert_sum
 from conformance.unit.support.trees import no_function
 
 LIBRARY = load_library()
@@ -157,3 +161,41 @@ def test_index_of_no_array_is_malformed() -> None:
     )
     with pytest.raises(MalformedIRError, match="Index is marked f32 but gives None"):
         verify(f, no_function)
+
+
+def test_what_all_lights_share_stands_before_the_loop() -> None:
+    """The whole fur shader under an array of lights: the view's sine, depth and exponentials once."""
+    shader = LIBRARY.function("fakefur_shade")
+    vectors = array_of(VEC3, LIGHTS)
+    arguments = tuple(
+        ir.Index(VEC3, ir.Var(vectors, p.name), ir.Var(I32, "i"))
+        if p.name in ("l", "light")
+        else ir.Var(p.type, p.name)
+        for p in shader.parameters
+    )
+    total = ir.Var(VEC3, "total")
+    added = ir.Binary(VEC3, "+", total, ir.Call(VEC3, "fakefur_shade", arguments))
+    body = (
+        ir.Let("total", ir.Construct(VEC3, (ir.Const(F32, 0.0),)), True),
+        ir.For("i", 0, LIGHTS, (ir.Assign("total", added),)),
+        ir.Return(total),
+    )
+    parameters = tuple(replace(p, type=vectors) if p.name in ("l", "light") else p for p in shader.parameters)
+    function = replace(shader, name="fur_lights", parameters=parameters, body=body)
+    extended = LIBRARY.with_functions([function])
+    made = specialise(extended, "fur_lights", {"optics.rho_surface": 0.0}, new_name="scene")
+    verify(made.function, no_function)
+    before = [s.name for s in made.function.body if isinstance(s, ir.Let)]
+    (loop,) = (s for s in made.function.body if isinstance(s, ir.For))
+    inside = [s.name for s in loop.body if isinstance(s, ir.Let)]
+    assert {"sin_v", "hair_cover", "clear_view", "opacity"} <= set(before)
+    assert {"sin_l", "defect", "clear_light"} <= set(inside)
+    unrolled = specialise(
+        extended, "fur_lights", {"optics.rho_surface": 0.0}, new_name="scene", unroll=LIGHTS
+    )
+    kept, flat = operations(made.function), operations(unrolled.function)
+    assert kept == {**flat, "arithmetic": flat["arithmetic"] + 3}  # the loop also adds the first light to 0
+    own = {name: a for name, a in inputs().items() if name != "n"}
+    given = made.impose({**draw(shader, "uniform", LANES, 5), **own})
+    got = evaluate(LIBRARY.with_functions([made.function]), "scene", made.arguments(given))
+    assert permitted(extended, "fur_lights", given, "wgsl").contains(got).all()
