@@ -4,7 +4,9 @@ from shaderlib.domains import Direction, Exponent, ExponentFrom8, ExponentFrom16
 from shaderlib.lang import dot, f32, variant
 from shaderlib.numeric.pow_one_minus import (
     pow_one_minus,
+    pow_one_minus_cubic8,
     pow_one_minus_from4,
+    pow_one_minus_from8,
     pow_one_minus_gauss,
     pow_one_minus_sq16,
 )
@@ -69,3 +71,33 @@ def strand_specular_half_sq16(t: Direction, h: Direction, exponent: ExponentFrom
     """
     c = dot(t, h)
     return pow_one_minus_sq16(c * c, 0.5 * exponent)
+
+
+@variant("strand_specular_half")
+def strand_specular_half_from8(t: Direction, h: Direction, exponent: ExponentFrom16) -> f32:
+    """Half-vector lobe of a strand for exponents from 16 on, by one exponential and without a division.
+
+    t         strand tangent, root to tip
+    h         half_vector of light and viewer
+    exponent  sharpness of the highlight, in [16, 1e5]: half of it is the power, from 8 on
+    returns   1 where t.h = 0, falling to 0 along the strand
+    form      pow_one_minus_from8 of (t.h)^2
+    source    strand_specular_half; pow_one_minus_from8
+    """
+    c = dot(t, h)
+    return pow_one_minus_from8(c * c, 0.5 * exponent)
+
+
+@variant("strand_specular_half")
+def strand_specular_half_cubic8(t: Direction, h: Direction, exponent: ExponentFrom16) -> f32:
+    """Half-vector lobe of a strand for exponents from 16 on, without transcendental function or division.
+
+    t         strand tangent, root to tip
+    h         half_vector of light and viewer
+    exponent  sharpness of the highlight, in [16, 1e5]: half of it is the power, from 8 on
+    returns   1 where t.h = 0, falling to 0 along the strand
+    form      pow_one_minus_cubic8 of (t.h)^2
+    source    strand_specular_half; pow_one_minus_cubic8
+    """
+    c = dot(t, h)
+    return pow_one_minus_cubic8(c * c, 0.5 * exponent)
