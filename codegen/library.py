@@ -42,10 +42,15 @@ class Selection:
 class Library:
     """All shading functions below one source folder. Functions are lowered when first asked for."""
 
-    def __init__(self, root: Path) -> None:
-        """Raises UserError or SourceError for sources that cannot be read."""
+    def __init__(self, root: Path, extra: tuple[Path, ...] = ()) -> None:
+        """Raises UserError or SourceError for sources that cannot be read.
+
+        extra  further folders of sources, each a section of its own named like the folder. They may use and
+               vary what is below `root`, and declare their bounds beside them
+        """
         self.root = root
-        self.resolver = Resolver(root)
+        self.extra = extra
+        self.resolver = Resolver(root, extra)
         self._added: dict[str, Function] = {}
 
     def with_functions(self, functions: Iterable[Function]) -> Library:
@@ -55,7 +60,7 @@ class Library:
         execution, evaluation and intervals take them by name like any other.
         """
         extended = Library.__new__(Library)
-        extended.root, extended.resolver = self.root, self.resolver
+        extended.root, extended.extra, extended.resolver = self.root, self.extra, self.resolver
         extended._added = {**self._added, **{f.name: f for f in functions}}
         if "bounds" in self.__dict__:
             extended.__dict__["bounds"] = self.bounds
@@ -101,8 +106,10 @@ class Library:
     def bounds(self) -> dict[str, list[Bound]]:
         """Declared error bounds by function name, from shaderlib/<section>/bounds.toml."""
         bounds: dict[str, list[Bound]] = {}
-        for path in sorted(self.root.glob("*/bounds.toml")):
-            shown = f"shaderlib/{path.parent.name}/{path.name}"
+        beside = [path for folder in self.extra if (path := folder / "bounds.toml").is_file()]
+        for path in [*sorted(self.root.glob("*/bounds.toml")), *beside]:
+            inside = path.is_relative_to(self.root)
+            shown = f"{'shaderlib/' if inside else ''}{path.parent.name}/{path.name}"
             try:
                 data = tomllib.loads(path.read_text(encoding="utf-8"))
             except tomllib.TOMLDecodeError as e:
@@ -169,6 +176,9 @@ class Library:
 
 
 @functools.cache
-def load_library(root: Path | None = None) -> Library:
-    """The library of the installed package, or of another source folder; parsed once per process."""
-    return Library(root or default_root())
+def load_library(root: Path | None = None, extra: tuple[Path, ...] = ()) -> Library:
+    """The library of the installed package, or of another source folder; parsed once per process.
+
+    extra  folders of further sources, see Library
+    """
+    return Library(root or default_root(), extra)

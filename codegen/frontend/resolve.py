@@ -28,10 +28,11 @@ _DEFINITION = re.compile(r"^(def|class) (\w+)", re.MULTILINE)
 class Resolver:
     """All sources below one folder; functions and structs become IR when first asked for."""
 
-    def __init__(self, root: Path) -> None:
-        """`root` is the folder of the package shaderlib; raises UserError where there is none."""
-        if not root.is_dir():
-            raise UserError(f'no shader sources: "{root}" is not a folder')
+    def __init__(self, root: Path, extra: Iterable[Path] = ()) -> None:
+        """`root` is the folder of the package shaderlib; raises UserError where there is none.
+
+        Each folder of `extra` counts as one more section, named like the folder: shaderlib.<folder>.<file>.
+        """
         self._paths: dict[str, tuple[Path, str]] = {}
         self._files: dict[str, SourceFile] = {}
         self._defined: dict[str, str] = {}
@@ -40,12 +41,20 @@ class Resolver:
         self._structs: dict[str, StructDef] = {}
         self._lowering: list[str] = []
         self._defining: list[tuple[str, str]] = []
-        for path in sorted(root.rglob("*.py")):
-            relative = path.relative_to(root)
+        self._add(root, root, f"{ROOT_PACKAGE}/")
+        for folder in extra:
+            self._add(folder, folder.parent, "")
+
+    def _add(self, folder: Path, base: Path, shown: str) -> None:
+        """Take in the sources below a folder, as modules named by their way from `base`."""
+        if not folder.is_dir():
+            raise UserError(f'no shader sources: "{folder}" is not a folder')
+        for path in sorted(folder.rglob("*.py")):
+            relative = path.relative_to(base)
             if path.name in ("lang.py", "__init__.py"):
                 continue
             module = ".".join((ROOT_PACKAGE, *relative.with_suffix("").parts))
-            self._paths[module] = path, f"{ROOT_PACKAGE}/{relative.as_posix()}"
+            self._paths[module] = path, f"{shown}{relative.as_posix()}"
             self._scan(module)
 
     def _scan(self, module: str) -> None:
