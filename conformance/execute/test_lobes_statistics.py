@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import itertools
 import tomllib
+from collections.abc import Collection, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,8 @@ CHECKS: dict[str, Any] = tomllib.loads(
 )["lobes"]
 SETTINGS = CHECKS["settings"]
 SEED = 20_070_804
+COSTLY = ("poulin_fournier",)
+"""Lobes whose value is a quadrature."""
 
 
 def label(row: list[Any]) -> str:
@@ -65,6 +68,14 @@ def views() -> list[Array]:
 def lobe(row: list[Any], call: Call) -> LobeEvaluator:
     """The lobe of a setting."""
     return lobe_evaluator(call, row[0], dict(zip(LOBES[row[0]], row[1], strict=True)))
+
+
+def settings(costly: Collection[str]) -> Iterator[Any]:
+    """Numbers of the settings; of a costly lobe only the last in a normal run."""
+    last = {row[0]: index for index, row in enumerate(SETTINGS)}
+    for index, (name, *_) in enumerate(SETTINGS):
+        nightly = name in costly and index != last[name]
+        yield pytest.param(index, marks=pytest.mark.nightly) if nightly else index
 
 
 def on_device(row: list[Any], runtime: TimedRuntime) -> LobeEvaluator:
@@ -129,7 +140,7 @@ def exact_albedos(index: int) -> list[float]:
     return [albedo_by_quadrature(truth, v, chart) for v, chart in zip(views(), charts, strict=True)]
 
 
-@pytest.mark.parametrize("index", range(len(SETTINGS)), ids=lambda k: label(SETTINGS[k]))
+@pytest.mark.parametrize("index", [*settings(COSTLY)], ids=lambda k: label(SETTINGS[k]))
 def test_furnace(runtime: TimedRuntime, index: int) -> None:
     check, row = CHECKS["furnace"], SETTINGS[index]
     evaluator = on_device(row, runtime)

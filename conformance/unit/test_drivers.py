@@ -10,6 +10,7 @@ Not covered here: whether functions keep their bounds (vair check --driver).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,8 @@ from targets.drivers import (
     probe_driver,
 )
 
+EVERY_RUN = ("llvmpipe-fragment", "softpipe-fragment", "swiftshader", "rusticl")
+"""Drivers that answer in every run; the targets' own tests use the others, or these are like them."""
 GOOD = {"title": "a driver", "target": "glsl", "install": "apt", "match": {"device": "llvmpipe"}}
 LLVMPIPE = Device(
     "glsl", "OpenGL 4.5", "Mesa/X.org: 4.5 (Core Profile) Mesa 22.3.6", "llvmpipe (LLVM 15.0.6)"
@@ -151,6 +154,13 @@ def test_two_lanes_at_once_take_any_number_of_lanes(target: str) -> None:
         assert np.array_equal(np.asarray(pair), np.asarray(plain))
 
 
+def own_process() -> Iterator[Any]:
+    """Every driver by name, some of them in the nightly run only."""
+    for name, known in catalogue().items():
+        if not known.system:
+            yield name if name in EVERY_RUN else pytest.param(name, marks=pytest.mark.nightly)
+
+
 def check(name: str, mode: str, **points: Any) -> FunctionResult:
     """sin_angle on a driver, or a skip where it does not open. The probe is left out, for time."""
     try:
@@ -161,7 +171,7 @@ def check(name: str, mode: str, **points: Any) -> FunctionResult:
     return result
 
 
-@pytest.mark.parametrize("name", [name for name, known in catalogue().items() if not known.system])
+@pytest.mark.parametrize("name", [*own_process()])
 def test_driver_checks_a_function_in_its_own_process(name: str) -> None:
     result = check(name, "default", uniform=200, family=20)
     assert result.passed, result.broken or result.failures[0].lines()

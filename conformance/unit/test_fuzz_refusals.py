@@ -11,7 +11,7 @@ import pytest
 from conformance.fuzz.refusals import MUTANTS, Refusals, damaged, read_damaged
 
 SEED = 3
-PROGRAMS, NIGHTLY_PROGRAMS = 25, 2_500
+PROGRAMS, NIGHTLY_PROGRAMS = 14, 2_500
 
 
 def check(numbers: range) -> Refusals:

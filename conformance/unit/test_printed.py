@@ -31,6 +31,7 @@ with Path(__file__).with_name("printed_checks.toml").open("rb") as file:
 REMEDY = 'run "python -m conformance.printed"'
 
 
+@pytest.mark.nightly  # the pictures and the known figures come from the same measurements
 def test_page_is_what_is_measured() -> None:
     assert README.read_text(encoding="utf-8") == report(), REMEDY
 
