@@ -20,6 +20,7 @@ from conformance.bench.accuracy import Error
 from conformance.bench.kernels import THROUGHPUT
 from conformance.bench.ratios import Spread
 from conformance.bench.timing import Bench, GroupTiming, Timing
+from conformance.peers import PEERS
 from targets import Device
 
 SCHEMA = 2
@@ -82,7 +83,7 @@ def function_data(library: Library, f: Function, base: str) -> dict[str, Any]:
     return {
         "name": f.name,
         "base": base,
-        "kind": f.kind,
+        "kind": "peer" if f.name in PEERS else f.kind,
         "source_hash": library.select([f.name]).source_hash,
         "operations": operations(library, f),
     }

@@ -19,6 +19,7 @@ from conformance.check import measure
 from conformance.check.engine import Backend, draws
 from conformance.check.features import applies
 from conformance.guarantees.sample import together
+from conformance.peers import PEERS
 from conformance.reference import ambiguous
 
 MEASURES = ("absolute", "relative", "ulp")
@@ -44,7 +45,7 @@ class Whole:
 
 
 def whole(library: Library, group: Group, on: Backend, uniform: int, family: int) -> dict[str, Whole]:
-    """The members that may stand for the base, by name: itself and its variants, no printed form."""
+    """The members that may stand for the base, by name: itself and its variants."""
     base = group.base
     sample = together(draws(base, uniform, family))
     clear = ~ambiguous(base.name, sample.inputs)
@@ -52,7 +53,7 @@ def whole(library: Library, group: Group, on: Backend, uniform: int, family: int
     found = {}
     for f in group.members:
         reference = reference_of(f, base)
-        if f.kind == "printed" or reference is None:
+        if f.kind == "printed" or f.name in PEERS or reference is None:
             continue
         narrower = accepts_less(f, base)
         if narrower:

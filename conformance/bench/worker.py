@@ -17,8 +17,9 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from codegen.execute import execute
-from codegen.library import Library, load_library
+from codegen.library import Library
 from codegen.readme import SPEED
+from conformance import peers
 from conformance.bench import kernels
 from conformance.bench.accuracy import Error, errors
 from conformance.bench.figures import device_figures
@@ -116,7 +117,7 @@ def backend_of(runtime: TimedRuntime) -> Backend:
 def measure(job: Job, say: Say) -> dict[str, Any]:
     """The whole measurement of one driver, as data; says how far it is."""
     end = time.monotonic() + job.seconds if job.seconds else math.inf
-    library = load_library()
+    library = peers.library()
     chosen = sorted(groups(library, job.functions), key=lambda g: g.base.name not in SPEED)
     runtime = opened(job)
     bench = Bench(library, runtime, job.effort)

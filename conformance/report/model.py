@@ -72,8 +72,8 @@ def error_in(entry: Mapping[str, Any], unit: str) -> float | None:
 
 
 def candidates(result: Result, base: str) -> list[Mapping[str, Any]]:
-    """The members of a group that compute the same: the base and its variants, not the printed forms."""
-    return [f for f in result["functions"] if f["base"] == base and f["kind"] != "printed"]
+    """The members of a group that the library offers: the base and its variants."""
+    return [f for f in result["functions"] if f["base"] == base and f["kind"] in ("base", "variant")]
 
 
 def fronts(result: Result) -> Iterable[dict[str, Any]]:

@@ -14,6 +14,8 @@ MODES = {
     "latency": "one chain, each evaluation waits for the last",
     "flat": "one chain without a loop",
 }
+PEER = "peer_"
+"""What names of peers' forms begin with."""
 KINDS = {"base": "default", "variant": "variant", "printed": "printed form", "peer": "peer's form"}
 
 
@@ -71,7 +73,8 @@ def _device(result: Mapping[str, Any]) -> dict[str, Any]:
 
 def _entry(result: Mapping[str, Any], entry: Mapping[str, Any]) -> dict[str, Any]:
     """One member on one driver."""
-    error = entry["error"]
+    error, foreign = entry["error"], entry["kind"] == "peer"
+    name = entry["base"] if foreign else entry["name"]
     return {
         "name": entry["name"],
         "tag": short_name(entry["name"], entry["base"]),
@@ -84,8 +87,8 @@ def _entry(result: Mapping[str, Any], entry: Mapping[str, Any]) -> dict[str, Any
         "not_finite": error["not_finite"] if error else 0,
         "inputs": error["inputs"] if error else 0,
         "table": error["permitted"]["table"] if error and error["permitted"] else "",
-        "replay": f"vair check --replay {worst.place(result, entry['name'])}",
-        "again": f"vair report -o DIR --function {entry['name']} --target {result['device']['target']}",
+        "replay": "" if foreign else f"vair check --replay {worst.place(result, name)}",
+        "again": f"vair report -o DIR --function {name} --target {result['device']['target']}",
     }
 
 
@@ -117,7 +120,7 @@ def short_name(name: str, base: str) -> str:
     if name == base:
         return "default"
     stem = base.split("_")
-    words = name.split("_")
+    words = name.removeprefix(PEER).split("_")
     while stem and words and len(words) > 1 and stem[0] == words[0]:
         stem, words = stem[1:], words[1:]
     return " ".join(words)

@@ -20,10 +20,13 @@ def place(result: Mapping[str, Any], name: str) -> PurePosixPath:
 
 
 def records(result: Mapping[str, Any], entry: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """The inputs of the largest error in each unit; one record where it is the same input."""
+    """The inputs of the largest error in each unit; one record where it is the same input.
+
+    A peer's form has none: it is no function of the library.
+    """
     found: dict[str, dict[str, Any]] = {}
     device, error = result["device"], entry["error"]
-    for unit in UNITS if error is not None else ():
+    for unit in UNITS if error is not None and entry["kind"] != "peer" else ():
         words = error[unit]["words"]
         if words and words not in found:
             found[words] = {

@@ -92,7 +92,7 @@ def test_what_is_no_report_is_refused(text: str, tmp_path: Path) -> None:
         ("strand_specular_sq16", "strand_specular", "sq16"),
         ("fakefur_shade_slab_rational_sq16", "fakefur_shade", "slab rational sq16"),
         ("strand_cosine", "strand_cosine", "default"),
-        ("tressfx_specular", "strand_specular", "tressfx specular"),
+        ("peer_sine_unclamped", "sin_angle", "sine unclamped"),
     ],
 )
 def test_short_names(name: str, base: str, short: str) -> None:

@@ -15,6 +15,7 @@ const number = (v) => {
   const size = Math.abs(v);
   return size >= 1e-3 && size < 1e5 ? Number(v.toPrecision(3)).toLocaleString("en") : v.toExponential(1);
 };
+const tagOf = (e) => (e.not_finite ? `${e.tag}, not always finite` : e.tag);
 const wrapped = (words) => words.replaceAll(";", "<br>  ");
 
 function here(group) {
@@ -23,7 +24,7 @@ function here(group) {
 
 function height(e) {
   const error = e.errors?.[state.unit];
-  return !error || error.max === null || e.not_finite ? null : Math.max(error.max, LOWEST[state.unit]);
+  return !error || error.max === null ? null : Math.max(error.max, LOWEST[state.unit]);
 }
 
 /* ---------------------------------------------------------------- plots */
@@ -99,10 +100,11 @@ function hover(e) {
   if (s.ratio !== null) lines.push(`${number(s.ratio)} × default [${number(s.low)}, ${number(s.high)}]`);
   if (error) {
     lines.push(`${number(error.max)} ${state.unit === "ulp" ? "ULP" : "steps"} at most, 99.9 %: ${number(error.p999)}`);
+    if (e.not_finite) lines.push(`${e.not_finite} of ${e.inputs} results are not finite`);
     if (error.guaranteed !== null) lines.push(`permitted: ${permitted(error)}`);
     lines.push(`worst input:<br>  ${wrapped(error.words)}`);
   }
-  lines.push(e.replay);
+  lines.push(e.replay || e.again);
   return lines.join("<br>") + "<extra></extra>";
 }
 
@@ -146,8 +148,8 @@ function drawCard(card) {
     },
   ];
   traces.push({
-    x: xs, y: ys, mode: "markers+text", text: entries.map((e) => e.tag), cliponaxis: false,
-    textposition: labelPlaces(plot, x, y, xs, ys, tops, entries.map((e) => e.tag)),
+    x: xs, y: ys, mode: "markers+text", text: entries.map(tagOf), cliponaxis: false,
+    textposition: labelPlaces(plot, x, y, xs, ys, tops, entries.map(tagOf)),
     textfont: { size: 11, color: entries.map((e) => colour(e.kind === "base" ? "ink" : e.kind)) },
     hovertemplate: entries.map(hover),
     marker: {
@@ -205,11 +207,11 @@ function list(card, group) {
       const unit = state.unit === "ulp" ? "ULP" : "8-bit steps";
       add("dd", `at most ${number(error.max)} ${unit} on ${e.inputs.toLocaleString("en")} inputs (${e.domain})`);
       if (error.guaranteed !== null) add("dd", `the specification (${e.table}) permits ${permitted(error)}`);
-      add("dd", "worst input, words in hex, and what replays it in the folder of this report:");
+      add("dd", `worst input, words in hex${e.replay ? ", and what replays it in the folder of this report" : ""}:`);
       add("dd", error.words, true);
-      add("dd", e.replay, true);
+      if (e.replay) add("dd", e.replay, true);
     }
-    if (e.not_finite) add("dd", `${e.not_finite} results are not finite`);
+    if (e.not_finite) add("dd", `${e.not_finite} of ${e.inputs.toLocaleString("en")} results are not finite`);
     add("dd", "measure again:");
     add("dd", e.again, true);
     add("dd", `${e.lanes > 1 ? `${e.lanes} work items at once` : e.lanes === 1 ? "one work item at a time" : "work items at once: not known"}, ${e.vectorised}`);
