@@ -20,7 +20,7 @@ from codegen.intervals.values import Range, Single, Truth, Whole, constant
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Finite, Interval, Length, Unit
 from codegen.ir.types import BOOL, F32, I32, Array, Scalar, Type, Vector
-from codegen.passes.norms import UNIT_SLACK, norm, product
+from codegen.passes.norms import UNIT_SLACK, Lengths
 from codegen.passes.transfer import Bound, Transfer, remembered, transfers
 from codegen.passes.values import Values, any_element
 
@@ -52,6 +52,7 @@ class Ranges:
         self.facts: dict[int, tuple[float, float]] = {}
         self._under: list[tuple[Transfer, dict[int, Bound]]] = [(t, {}) for t in transfers()]
         self._kept: list[ir.Expr] = []
+        self._lengths = Lengths(values, self.bounds)
         self._known: dict[int, tuple[Bounds, ...]] = {}
 
     def add_fact(self, e: ir.Expr, low: float, high: float) -> None:
@@ -70,6 +71,8 @@ class Ranges:
         if id(e) not in self._known:
             with np.errstate(all="ignore"):
                 for part in _pending(e, self._under[0][1]):  # operands first, without deep recursion
+                    if id(part) in self._under[0][1]:
+                        continue  # asked for meanwhile, for the lengths of others
                     cut = self._cut(part)
                     for transfer, known in self._under:
                         known[id(part)] = self._narrowed(part, self._value(transfer, known, part), cut)
@@ -102,22 +105,26 @@ class Ranges:
         """The ends that a fact or the lengths of vectors give a float value, and whether it is a fact."""
         if not _is_float(e.type):
             return None
-        size = math.inf
+        least, most = -math.inf, math.inf
         match e:
             case ir.Builtin(op="dot", args=(a, b)):
-                size = product(self.values, a, b)
+                least, most = self._lengths.product(a, b)
             case ir.Builtin(op="length", args=(a,)):
-                size = math.sqrt(product(self.values, a, a)) * (1.0 + UNIT_SLACK)
+                ends = self._lengths.product(a, a)
+                least, most = (
+                    math.sqrt(x) * (1.0 + k * UNIT_SLACK) for x, k in zip(ends, (-1, 1), strict=True)
+                )
             case _ if isinstance(e.type, Vector):
-                size = norm(self.values, e)
+                most = self._lengths.of(e)[1]
+                least = -most
         fact = self._fact(e)
         if fact is not None:
             slack = FACT_SLACK * max(1.0, *(abs(x) for x in fact if math.isfinite(x)))
             low, high = fact[0] - slack, fact[1] + slack
-            if low > size or high < -size:
-                raise self._contradiction(e, low, high, Bounds(-size, size))
-            return max(low, -size), min(high, size), True
-        return (-size, size, False) if math.isfinite(size) else None
+            if low > most or high < least:
+                raise self._contradiction(e, low, high, Bounds(least, most))
+            return max(low, least), min(high, most), True
+        return (least, most, False) if math.isfinite(most) else None
 
     def _contradiction(self, e: ir.Expr, low: float, high: float, found: Bounds) -> UserError:
         given = f'fact "{self.values.show(e)}" in [{low:.6g}, {high:.6g}]'

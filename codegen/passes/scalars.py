@@ -1,7 +1,7 @@
 """Components: those of a constructed vector are its operands; vectors stay whole where all parts are used.
 
-before   vec3(a, b, c).y        vec3(v.x, v.y, v.z)     vec3(s, s, s)     array(a, b)[1]
-after    b                      v                       vec3(s)           b
+before   vec3(a, b, c).y    vec3(v.x, v.y, v.z)    vec3(s, s, s)    array(a, b)[1]    vec3(s) + vec3(t)
+after    b                  v                      vec3(s)          b                 vec3(s + t)
 
 Structs never become values: inlining keeps them as their fields.
 """
@@ -9,15 +9,19 @@ Structs never become values: inlining keeps them as their fields.
 from __future__ import annotations
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import Vector
+from codegen.ir.types import Scalar, Vector
 from codegen.passes.values import Rewrite, Values
 
 NAME = "scalars"
 EXACT = "exact: components are moved, nothing is computed"
+ALIKE = "exact: every component is the same operation on the same operands"
 
 
 def components(values: Values, e: ir.Expr) -> Rewrite | None:
     """Folds constructions and selections of components."""
+    if isinstance(e, ir.Binary) and isinstance(e.type, Vector):
+        alike = _alike(values, e, e.type)
+        return None if alike is None else Rewrite(alike, NAME, ALIKE)
     if isinstance(e, ir.Swizzle):
         found = _chosen(values, e)
     elif isinstance(e, ir.Construct) and isinstance(e.type, Vector):
@@ -29,6 +33,25 @@ def components(values: Values, e: ir.Expr) -> Rewrite | None:
     else:
         found = None
     return None if found is None else Rewrite(found, NAME, EXACT)
+
+
+def _alike(values: Values, e: ir.Binary, type_: Vector) -> ir.Expr | None:
+    """An operation on vectors whose components are all alike is one on scalars, or scales a vector."""
+    left, right = _scalar(e.left), _scalar(e.right)
+    if left is not None and right is not None:
+        return values.splat(values.build(ir.Binary(type_.element, e.op, left, right)), type_)
+    if right is not None and right is not e.right and e.op in ("*", "/"):
+        return values.build(ir.Binary(type_, e.op, e.left, right))
+    if left is not None and left is not e.left and e.op == "*":
+        return values.build(ir.Binary(type_, e.op, left, e.right))
+    return None
+
+
+def _scalar(e: ir.Expr) -> ir.Expr | None:
+    """A scalar, or what all components of a vector are; None where they differ."""
+    if isinstance(e.type, Scalar):
+        return e
+    return e.args[0] if isinstance(e, ir.Construct) and len(e.args) == 1 else None
 
 
 def _chosen(values: Values, e: ir.Swizzle) -> ir.Expr | None:

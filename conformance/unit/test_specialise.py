@@ -136,6 +136,11 @@ def test_components_of_constructed_vectors(tmp_path: Path) -> None:
     assert body(tmp_path, text) == ["return v.yzy + v;"]
 
 
+def test_alike_components_are_computed_once(tmp_path: Path) -> None:
+    text = "def f(x: X, y: X, v: V) -> vec3:\n    return (vec3(x) + vec3(y)) * v / vec3(y - x)\n"
+    assert body(tmp_path, text) == ["return (x + y) * v / (y - x);"]
+
+
 def test_constants_and_aliases_stand_for_parameters(tmp_path: Path) -> None:
     text = "def f(x: X, y: X, k: X) -> f32:\n    return (x - y) * exp(k) + x * k\n"
     found = made(tmp_path, text, constants={"k": 2.0}, aliases={"y": "x"})
