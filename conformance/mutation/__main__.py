@@ -18,13 +18,14 @@ def main() -> int:
     parser.add_argument(
         "groups", nargs="*", metavar="GROUP", help=f"of {', '.join(groups())}; all by default"
     )
-    parser.add_argument(
-        "--sampled", action="store_true", help="a fixed sample of each group; writes no table"
-    )
+    parser.add_argument("--sampled", action="store_true", help="a fixed sample of each group")
     parser.add_argument("--count", type=int, help="size of the sample")
     parser.add_argument("--seed", type=int, default=SEED, help="seed of the sample")
     parser.add_argument("--file", default="", help="only mutants of files whose path holds this")
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument(
+        "--write", action="store_true", help="write the tables of a sample, too; those of whole groups always"
+    )
     parser.add_argument("--json", type=Path, help="write every outcome to this file")
     given = parser.parse_args()
     unknown = [name for name in given.groups if name not in groups()]
@@ -68,7 +69,7 @@ def main() -> int:
         ]
         given.json.write_text(json.dumps(rows, indent=1), encoding="utf-8")
     if given.write or not (given.sampled or given.file):
-        write(found)
+        write(found, given.seed)
     return int(missed)
 
 

@@ -21,6 +21,7 @@ import pytest
 
 from conformance.mutation import python_rules, shader_rules
 from conformance.mutation.plan import PLANTED, excuses, groups, mutants_of, planted, tree_of
+from conformance.mutation.report import confidence
 from conformance.mutation.sites import Mutant, mutants, mutated
 
 ROOT = Path(__file__).parents[2]
@@ -140,6 +141,13 @@ def test_trials_tell_harmless_from_deadly(tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert json.loads(done.stdout.splitlines()[-1]) == {name: o for name, (_, o) in CHANGES.items()}
+
+
+def test_confidence_of_a_sample() -> None:
+    """All of 30 killed: more than 88.4 % of all (0.025^(1/30)); half of them: between 31 % and 69 %."""
+    assert confidence(30, 30) == pytest.approx((0.025 ** (1 / 30), 1.0), abs=1e-9)
+    assert confidence(0, 30) == pytest.approx((0.0, 1.0 - 0.025 ** (1 / 30)), abs=1e-9)
+    assert confidence(15, 30) == pytest.approx((0.3130, 0.6870), abs=1e-4)
 
 
 def test_every_excuse_excuses_something() -> None:
