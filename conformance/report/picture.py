@@ -41,6 +41,9 @@ def overview(report: Mapping[str, Any]) -> bytes:
         _panel(axes, title, found)
     panels[0].set_ylabel("largest error in 8-bit steps", color=SOFT)
     figure.supxlabel("time relative to the default form of the same function", color=SOFT, fontsize=10)
+    figure.draw_without_rendering()  # places the panels, so that names can be measured
+    for axes, (_, found) in zip(panels, with_points, strict=True):
+        _name_best(axes, found)
     stream = io.BytesIO()
     # No date and no version in the file: the same figures give the same bytes.
     figure.savefig(stream, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
@@ -84,19 +87,16 @@ def _panel(axes: Axes, title: str, found: list[tuple[str, str, float, float]]) -
         axes.scatter(across, up, s=22, marker=marker, color=colour, alpha=0.8, linewidths=1.0)
     axes.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
-    gain = sorted((x, name, y) for name, kind, x, y in found if kind == "variant" and y <= HALF_STEP)
-    _name(axes, [(name, x, y) for x, name, y in gain], [(x, y) for _, _, x, y in found])
 
 
-def _name(axes: Axes, chosen: list[tuple[str, float, float]], marks: list[tuple[float, float]]) -> None:
-    """Names beside the first of the chosen points, where they cover no mark, no other name and no edge."""
-    figure = axes.get_figure(root=True)
-    assert figure is not None
-    figure.draw_without_rendering()
+def _name_best(axes: Axes, found: list[tuple[str, str, float, float]]) -> None:
+    """Names beside the fastest variants within half a step, where they cover no mark, name or edge."""
+    chosen = sorted((x, name, y) for name, kind, x, y in found if kind == "variant" and y <= HALF_STEP)
+    marks = [(x, y) for _, _, x, y in found]
     dots: Any = axes.transData.transform(marks) if marks else []
     taken: list[Bbox] = [Bbox.from_bounds(x - MARK, y - MARK, 2 * MARK, 2 * MARK) for x, y in dots]
     named = 0
-    for name, x, y in chosen:
+    for x, name, y in chosen:
         for place, side in ((NEAR, "left"), (-NEAR, "right")):
             text = axes.annotate(
                 name,
@@ -110,8 +110,10 @@ def _name(axes: Axes, chosen: list[tuple[str, float, float]], marks: list[tuple[
             )
             box = text.get_window_extent()
             inside = axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1
-            if named < NAMED and inside and not any(box.overlaps(other) for other in taken):
+            if inside and not any(box.overlaps(other) for other in taken):
                 taken.append(box)
                 named += 1
                 break
             text.remove()
+        if named == NAMED:
+            break

@@ -82,6 +82,7 @@ def _entry(result: Mapping[str, Any], entry: Mapping[str, Any]) -> dict[str, Any
         "speed": {mode: _speed(speed) for mode, speed in entry["speed"].items()},
         "lanes": entry["vectorised"]["lanes"],
         "vectorised": entry["vectorised"]["how"],
+        "operations": ", ".join(f"{count} {name}" for name, count in entry["operations"].items()),
         "domain": error["domain"] if error else "",
         "errors": {unit: _error(error, unit) for unit in UNITS} if error else None,
         "not_finite": error["not_finite"] if error else 0,

@@ -212,6 +212,7 @@ function list(card, group) {
       if (e.replay) add("dd", e.replay, true);
     }
     if (e.not_finite) add("dd", `${e.not_finite} of ${e.inputs.toLocaleString("en")} results are not finite`);
+    add("dd", `operations as written: ${e.operations}`);
     add("dd", "measure again:");
     add("dd", e.again, true);
     add("dd", `${e.lanes > 1 ? `${e.lanes} work items at once` : e.lanes === 1 ? "one work item at a time" : "work items at once: not known"}, ${e.vectorised}`);
