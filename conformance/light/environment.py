@@ -1,0 +1,116 @@
+"""An environment as the estimators see it: all texels for quadrature, a dual-paraboloid chain for lookups.
+
+Definitions of reference/lobes.md section 4: latitude-longitude texels with their exact solid angles;
+256 x 256 x 2 paraboloid texels with border 1.2, plain 2 x 2 means, trilinear lookups clamped to the edge.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.maps import latlong, mipmap, paraboloid
+from codegen.maps.radiance import read_radiance
+
+Array = npt.NDArray[np.float64]
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+class Environment:
+    """Radiance of every direction; directions (n, 3), energy (n, 3) = radiance times solid angle."""
+
+    def __init__(
+        self,
+        pixels: npt.NDArray[np.floating],
+        size: int = paraboloid.SIZE,
+        border: float = paraboloid.BORDER,
+        weighted: bool = False,
+    ) -> None:
+        height, width = pixels.shape[:2]
+        self.pixels = np.asarray(pixels, np.float64)
+        self.size, self.border = size, border
+        self.directions = latlong.directions(height, width).reshape(-1, 3)
+        self.energy = (self.pixels * latlong.solid_angles(height, width)[:, None, None]).reshape(-1, 3)
+        weights = paraboloid.solid_angles(size, border) if weighted else None
+        chains = [mipmap.chain(disc, weights) for disc in paraboloid.from_latlong(pixels, size, border)]
+        self.levels = [np.stack(pair) for pair in zip(*chains, strict=True)]
+
+    @classmethod
+    def read(cls, path: Path, *, weighted: bool = False) -> Environment:
+        """The environment of a file; values that are no radiance are mended."""
+        return cls(read_radiance(path, clean=True), weighted=weighted)
+
+    def texel_solid_angle(self, z: Array) -> Array:
+        """Solid angle of a texel of the largest level where it shows the direction w, z = w.z."""
+        return 4.0 * self.border**2 * (1.0 + np.abs(z)) ** 2 / self.size**2
+
+    def radiance(self, w: Array, lod: npt.ArrayLike = 0.0) -> Array:
+        """Trilinear lookups of directions (..., 3) at levels of detail (...), (..., 3)."""
+        uv = w[..., :2] / (1.0 + np.abs(w[..., 2:])) / self.border * 0.5 + 0.5
+        face = (w[..., 2] < 0.0).astype(np.int64)
+        lods = np.broadcast_to(np.clip(lod, 0.0, len(self.levels) - 1.0), face.shape)
+        lower = np.minimum(np.floor(lods), max(len(self.levels) - 2, 0)).astype(np.int64)
+        upper_share = (lods - lower)[..., None]
+        out = np.zeros(w.shape)
+        for k in np.unique(lower):
+            here = lower == k
+            fine = self._bilinear(int(k), face[here], uv[here])
+            coarse = self._bilinear(min(int(k) + 1, len(self.levels) - 1), face[here], uv[here])
+            out[here] = fine * (1.0 - upper_share[here]) + coarse * upper_share[here]
+        return out
+
+    def _bilinear(self, level: int, face: npt.NDArray[np.int64], uv: Array) -> Array:
+        image = self.levels[level]
+        size = image.shape[1]
+        place = np.clip(uv * size - 0.5, 0.0, size - 1.0)
+        corner = np.minimum(np.floor(place), max(size - 2, 0)).astype(np.int64)
+        (fx, fy), (x, y) = np.moveaxis(place - corner, -1, 0)[..., None], np.moveaxis(corner, -1, 0)
+        right, below = np.minimum(x + 1, size - 1), np.minimum(y + 1, size - 1)
+        above = image[face, y, x] * (1.0 - fx) + image[face, y, right] * fx
+        under = image[face, below, x] * (1.0 - fx) + image[face, below, right] * fx
+        return np.asarray(above * (1.0 - fy) + under * fy)
+
+
+class MapSampler:
+    """Directions in proportion to a map's luminance: a texel by inverse distribution, uniform within it."""
+
+    def __init__(self, environment: Environment) -> None:
+        luminance = (environment.energy @ LUMINANCE).reshape(environment.pixels.shape[:2])
+        total = luminance.sum()
+        self.shape = luminance.shape
+        self.share = luminance / total if total > 0.0 else np.full(self.shape, 1.0 / luminance.size)
+        self.rows = np.cumsum(self.share.sum(axis=1))
+
+    def sample(self, u: Array) -> Array:
+        """Directions (n, 3) of pairs (n, 2): u.y chooses the row, u.x the column."""
+        height, width = self.shape
+        target = u[:, 1] * self.rows[-1]
+        row = np.minimum(np.searchsorted(self.rows, target, side="right"), height - 1)
+        y = row + _within(self.rows, row, target)
+        columns = np.cumsum(self.share[row], axis=1)
+        aim = u[:, 0] * columns[:, -1]
+        column = np.minimum((columns <= aim[:, None]).sum(axis=1), width - 1)
+        x = np.empty(len(u))
+        for k, (line, at, wanted) in enumerate(zip(columns, column, aim, strict=True)):
+            x[k] = at + _within(line, np.array([at]), np.array([wanted]))[0]
+        theta, phi = np.pi * y / height, 2.0 * np.pi * (x / width - 0.5)
+        return np.stack([np.sin(theta) * np.sin(phi), np.cos(theta), -np.sin(theta) * np.cos(phi)], axis=-1)
+
+    def pdf(self, w: Array) -> Array:
+        """Density per steradian of directions (..., 3): P(texel) W H / (2 pi^2 sin(pi v))."""
+        height, width = self.shape
+        uv = latlong.coordinates(w)
+        column = np.minimum((uv[..., 0] * width).astype(np.int64), width - 1)
+        row = np.minimum((uv[..., 1] * height).astype(np.int64), height - 1)
+        sine = np.maximum(np.sin(np.pi * uv[..., 1]), 1e-9)
+        return np.asarray(self.share[row, column] * height * width / (2.0 * np.pi**2 * sine))
+
+
+def _within(running: Array, index: npt.NDArray[np.int64], target: Array) -> Array:
+    """Where between the running sums before and at `index` the target lies, in [0, 1)."""
+    before = np.where(index > 0, running[np.maximum(index - 1, 0)], 0.0)
+    step = running[index] - before
+    part = (target - before) / np.where(step > 0.0, step, 1.0)
+    return np.asarray(np.clip(part, 0.0, 1.0 - 1e-12))

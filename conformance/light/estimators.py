@@ -1,0 +1,130 @@
+"""Estimators of int L f cos dw: quadrature, grid, Monte Carlo, filtered, guarded, with the map's samples.
+
+Each takes an environment, views and a lobe and gives (n, 3) radiances. Samples of density 0 contribute 0 and
+count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.maps import latlong, mipmap
+from conformance.light.environment import Environment, MapSampler
+from conformance.light.lobes import Lobe, View
+from conformance.reference.sampling import hammersley
+
+Array = npt.NDArray[np.float64]
+Estimator = Callable[[Environment, View, Lobe, Array], Array]
+
+LEAST = 1e-30
+SHARP = 0.5
+"""Level of detail at the peak below which filtering is left out: samples then lie closer than half a texel's
+blur, and what filtering adds is error (measured: exponent 1000, 40 samples)."""
+
+
+def sequence(count: int) -> Array:
+    """The first `count` points of the Hammersley set of that size, (count, 2)."""
+    return np.asarray(hammersley(np.arange(count, dtype=np.uint32), np.full(count, count, np.uint32)))
+
+
+def quadrature(environment: Environment, view: View, lobe: Lobe) -> Array:
+    """The sum over every texel of the map: what the others estimate."""
+    found = []
+    for k in range(len(view)):
+        local = view.to_local(k, environment.directions)
+        found.append(lobe.value(local, view.v[k]) @ environment.energy)
+    return np.stack(found)
+
+
+def grid(environment: Environment, view: View, lobe: Lobe, rows: int, *, weighted: bool = True) -> Array:
+    """Fixed directions: the map box-filtered to `rows` rows of latitude, with its solid angles as weights.
+
+    weighted  False leaves the solid angles out, as the lecture does: every direction counts alike
+    """
+    height, width = environment.pixels.shape[:2]
+    weights = np.broadcast_to(latlong.solid_angles(height, width)[:, None], (height, width))
+    levels = mipmap.chain(environment.pixels, weights)
+    image = next(level for level in levels if level.shape[0] <= rows)
+    directions = latlong.directions(*image.shape[:2]).reshape(-1, 3)
+    angles = np.repeat(latlong.solid_angles(*image.shape[:2]), image.shape[1])
+    if not weighted:
+        angles = np.full(len(angles), 4.0 * np.pi / len(angles))
+    energy = image.reshape(-1, 3) * angles[:, None]
+    return np.stack([lobe.value(view.to_local(k, directions), view.v[k]) @ energy for k in range(len(view))])
+
+
+def plain(environment: Environment, view: View, lobe: Lobe, u: Array) -> Array:
+    """Importance sampling of the lobe at the largest level: unbiased but for the map's resampling."""
+    world, _, weight = _samples(view, lobe, u)
+    return np.asarray((environment.radiance(world) * weight[..., None]).mean(axis=1))
+
+
+def filtered(environment: Environment, view: View, lobe: Lobe, u: Array, bias: float = 0.0) -> Array:
+    """Colbert and Krivanek 2007: each sample looks up the level whose texel is as large as its share."""
+    world, pdf, weight = _samples(view, lobe, u)
+    lod = _level(environment, len(u) * pdf, world[..., 2], bias)
+    return np.asarray((environment.radiance(world, lod) * weight[..., None]).mean(axis=1))
+
+
+def guarded(environment: Environment, view: View, lobe: Lobe, u: Array) -> Array:
+    """Filtered, but plain where the densest sample would look up less than level SHARP."""
+    world, pdf, weight = _samples(view, lobe, u)
+    lod = _level(environment, len(u) * pdf, world[..., 2], 0.0)
+    lod = np.where(lod.min(axis=1, keepdims=True) < SHARP, 0.0, lod)
+    return np.asarray((environment.radiance(world, lod) * weight[..., None]).mean(axis=1))
+
+
+def combined(
+    environment: Environment, view: View, lobe: Lobe, u: Array, sampler: MapSampler, *, power: bool = False
+) -> Array:
+    """Half of the samples from the lobe, half from the map, by the balance (or power) heuristic, unfiltered.
+
+    The map's samples are the same for every view, so an engine can bake them.
+    """
+    count = len(u) // 2
+    half = sequence(max(count, 1))
+    world, pdf, weight = _samples(view, lobe, half)
+    share = _share(pdf, sampler.pdf(world), power)
+    total = (environment.radiance(world) * (weight * share)[..., None]).mean(axis=1)
+    others = sampler.sample(sequence(max(len(u) - count, 1)))
+    local = np.stack([view.to_local(k, others) for k in range(len(view))])
+    density = np.broadcast_to(sampler.pdf(others), local.shape[:2])
+    value = lobe.value(local, view.v[:, None, :])
+    share = _share(density, lobe.pdf(local, view.v[:, None, :]), power)
+    mine = np.where(density > 0.0, value * share / np.where(density > 0.0, density, 1.0), 0.0)
+    return np.asarray(total + (environment.radiance(others)[None] * mine[..., None]).mean(axis=1))
+
+
+def _share(own: Array, other: Array, power: bool) -> Array:
+    """The weight of a sample whose own density is the first, for as many samples of either kind."""
+    larger = np.maximum(own, other)
+    a, b = own / np.where(larger > 0.0, larger, 1.0), other / np.where(larger > 0.0, larger, 1.0)
+    if power:
+        a, b = a * a, b * b
+    return np.asarray(np.where(larger > 0.0, a / np.where(a + b > 0.0, a + b, 1.0), 0.0))
+
+
+def _samples(view: View, lobe: Lobe, u: Array) -> tuple[Array, Array, Array]:
+    """World directions (n, m, 3), densities (n, m) and weights value / density (n, m)."""
+    pairs = np.broadcast_to(u, (len(view), *u.shape))
+    local = lobe.sample(pairs, view.v[:, None, :])
+    pdf, value = lobe.pdf(local, view.v[:, None, :]), lobe.value(local, view.v[:, None, :])
+    return view.to_world(local), pdf, np.where(pdf > 0.0, value / np.where(pdf > 0.0, pdf, 1.0), 0.0)
+
+
+def _level(environment: Environment, samples_per_steradian: Array, z: Array, bias: float) -> Array:
+    covered = samples_per_steradian * environment.texel_solid_angle(z)
+    return np.asarray(np.maximum(0.0, bias - 0.5 * np.log2(np.maximum(covered, LEAST))))
+
+
+def rms(estimate: Array, truth: Array) -> float:
+    """Root of the mean square error over that of the truth, over views and channels."""
+    size = float((truth**2).mean())
+    return (
+        float(np.sqrt(((estimate - truth) ** 2).mean() / size))
+        if size > 0.0
+        else float(np.abs(estimate).max())
+    )
