@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, VEC3
+from codegen.ir.types import F32, VEC3, Scalar, Vector
 
 Definitions = Mapping[str, ir.Expr]
 
@@ -196,6 +196,20 @@ def _mirror_cosine(e: ir.Expr, definitions: Definitions) -> ir.Expr | None:
     )
 
 
+def _one_product(e: ir.Expr, definitions: Definitions) -> ir.Expr | None:
+    """A vector of equal components times a scalar: one product, then the vector. Exact."""
+    if not (isinstance(e, ir.Binary) and e.op == "*" and isinstance(e.type, Vector)):
+        return None
+    for vector, scalar in ((e.left, e.right), (e.right, e.left)):
+        splat = isinstance(vector, ir.Construct) and len(vector.args) == 1
+        if splat and isinstance(scalar.type, Scalar) and isinstance(vector, ir.Construct):
+            product = ir.Binary(e.type.element, "*", vector.args[0], scalar)
+            return ir.Construct(e.type, (product,))
+    return None
+
+
+SPLAT = Form("one product", "equal components by one product", _one_product)
+"""Exact: it needs no budget."""
 COSINE = Form("sine by cosine", "sines as sqrt(1 - cosine^2)", _sine_by_cosine)
 CROSS = Form("sine by cross product", "sines as |a x b|", _sine_by_cross)
 PLAIN = Form("plain cross product", "(a - b) x (a + b) as 2 a x b", _plain_cross)

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from codegen.ir import nodes as ir
+from codegen.ir.domains import Unit
+from codegen.ir.types import VEC3
 from codegen.library import Library
 from codegen.passes.operations import operations
 from codegen.passes.powers import LARGEST, ROWS
@@ -21,7 +23,7 @@ from codegen.scene.errors import Measured, Reference
 from codegen.scene.general import General
 from codegen.scene.knowledge import Knowledge
 from codegen.scene.lights import UNROLLED
-from codegen.scene.loosen import BUNDLES, loosened
+from codegen.scene.loosen import BUNDLES, SPLAT, loosened
 from codegen.scene.prices import Prices
 from codegen.scene.search import Found, Search
 from codegen.scene.sites import Path
@@ -160,6 +162,9 @@ class Reducer:
         self, made: Specialised, prices: Prices, budget: float, changes: list[Change]
     ) -> Specialised:
         """Forms that lose digits near the hair, where these digits are not needed."""
+        joined = loosened(made.function, SPLAT)
+        if joined is not None:
+            made = self.cleaned(joined)
         for bundle in BUNDLES:
             function, names = made.function, []
             for form in bundle:
@@ -221,7 +226,21 @@ class Reducer:
         library = self.library.with_functions([function])
         names = {p.name for p in function.parameters}
         facts = [f for f in self.knowledge.facts if all(n in names for n in _named(f[0]))]
+        facts += _lengths(function)
         return specialise(library, function.name, facts=facts, new_name=self.name, unroll=UNROLLED)
+
+
+def _lengths(function: ir.Function) -> list[tuple[str, float, float]]:
+    """That a cross product of two unit parameters is no longer than 1."""
+    units = {p.name for p in function.parameters if isinstance(p.domain, Unit) and p.type == VEC3}
+    found = {}
+    for e in ir.expressions(function.body):
+        if isinstance(e, ir.Builtin) and e.op == "cross":
+            pair = [a.name for a in e.args if isinstance(a, ir.Var) and a.name in units]
+            if len(pair) == 2:
+                product = f"cross({pair[0]}, {pair[1]})"
+                found[f"dot({product}, {product})"] = 0.0, 1.0
+    return [(expression, low, high) for expression, (low, high) in found.items()]
 
 
 def _named(expression: str) -> list[str]:

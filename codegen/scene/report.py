@@ -118,7 +118,7 @@ def _target(r: TargetResult, budget: float) -> dict[str, Any]:
             "unit": "ns per evaluation, net of inputs and loop",
             general: vars(speeds[0]),
             special: vars(speeds[1]),
-            "ratio": speeds[1].ns / speeds[0].ns if speeds[0].ns > 0.0 else None,
+            "ratio": speeds[1].ns / speeds[0].ns if min(s.low for s in speeds) > 0.0 else None,
         },
     }
 
