@@ -1,8 +1,9 @@
 """The cheapest variant within an error, from recorded measurements: `vair emit --max-error`.
 
 Only what is recorded decides, so that the same files give the same choice everywhere. An error is that over
-the whole domain of the base: what is declared everywhere, else the largest found. Of several recorded drivers
-of a target the largest error counts, and the geometric mean of the times.
+the whole domain of the base, as far as that declares an error itself: what is declared everywhere, else the
+largest found. Of several recorded drivers of a target the largest error counts, and the geometric mean of the
+times.
 """
 
 from __future__ import annotations
