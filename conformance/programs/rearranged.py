@@ -9,14 +9,14 @@ as rearranged, and is no failure.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from codegen.evaluate.arrays import Array, Value
-from codegen.intervals import DEFAULT_TABLES, permitted
+from codegen.intervals import DEFAULT_TABLES, Permitted, permitted
 from codegen.ir import nodes as ir
 from codegen.ir.types import Vector
 from codegen.library import Library
@@ -32,32 +32,52 @@ _CHAINS = {"+": ("+", "-"), "-": ("+", "-"), "*": ("*",)}
 def explained(
     library: Library, name: str, inputs: Mapping[str, Any], target: str, value: Value, table: str = ""
 ) -> Array:
-    """Mask of the lanes whose value lies in the interval of the rearranged function.
+    """Mask of the lanes whose value lies, component by component, in the interval of a rearranged function.
 
     table  the accuracy table; that of the target's default dialect if empty; no device rearranges nothing
     """
     chosen = table or DEFAULT_TABLES.get(target, "")
     if chosen not in REARRANGING:
         return np.zeros(1, np.bool_)
-    functions = {f.name: _rearranged(f) for f in library.select([name]).functions}
-    found = np.asarray(permitted(ExtendedLibrary(library, functions), name, inputs, chosen).contains(value))
-    if found.all():
-        return found
-    functions = {f.name: interpolated(f) for f in library.select([name]).functions}
-    found |= permitted(ExtendedLibrary(library, functions), name, inputs, chosen).contains(value)
-    if found.all():
-        return found
+    found = _components_inside(permitted(library, name, inputs, chosen), value)
+    for extended, arguments in _forms(library, name, inputs):
+        if found.all():
+            break
+        found |= _components_inside(permitted(extended, name, arguments, chosen), value)
+    return np.asarray(found.all(axis=1))
+
+
+def _forms(library: Library, name: str, inputs: Mapping[str, Any]) -> Iterator[tuple[Library, Any]]:
+    """Every rearranged form of a function with its arguments, the ones that cost least first."""
+    selected = library.select([name]).functions
+    for change in (_moved(_inwards), _moved(_outwards), interpolated):
+        yield ExtendedLibrary(library, {f.name: change(f) for f in selected}), inputs
     straight = straightened(library, name)
     arguments = straight.arguments(inputs) if straight.parameters else {}
     for constants_first in (False, True):
         made = chained(straight.function, library, constants_first)
-        allowed = permitted(ExtendedLibrary(library, {name: made}), name, arguments, chosen)
-        found = found | allowed.contains(value)
-    return found
+        yield ExtendedLibrary(library, {name: made}), arguments
 
 
-def _rearranged(function: ir.Function) -> ir.Function:
-    return replace(function, body=ir.map_body(function.body, _inwards))
+def _components_inside(allowed: Permitted, value: Value) -> Array:
+    """(N, components): which components lie inside; each may have been rearranged in a way of its own."""
+    columns = zip(*map(_columns, (allowed.low, allowed.high, value)), strict=True)
+    inside = [(x >= low) & (x <= high) for low, high, x in columns]
+    return np.stack(inside, axis=1) | (allowed.codes > 0)[:, None]
+
+
+def _columns(value: Value) -> Iterator[Array]:
+    if isinstance(value, dict):
+        for part in value.values():
+            yield from _columns(part)
+    elif value.ndim == 2:
+        yield from (value[:, k] for k in range(value.shape[1]))
+    else:
+        yield value
+
+
+def _moved(change: Callable[[ir.Expr], ir.Expr]) -> Callable[[ir.Function], ir.Function]:
+    return lambda function: replace(function, body=ir.map_body(function.body, change))
 
 
 def _inwards(e: ir.Expr) -> ir.Expr:
@@ -69,6 +89,17 @@ def _inwards(e: ir.Expr) -> ir.Expr:
     if not same or not _is_constant(e.right) or _is_constant(inner.right):
         return e
     return replace(inner, left=ir.Binary(e.type, e.op, inner.left, e.right))
+
+
+def _outwards(e: ir.Expr) -> ir.Expr:
+    """a + (b + c) becomes (a + b) + c for a constant c: relaxed OpenCL."""
+    if not (isinstance(e, ir.Binary) and e.op in ("+", "*") and isinstance(e.right, ir.Binary)):
+        return e
+    inner = e.right
+    same = inner.op in _CHAINS[e.op] and inner.type == e.type == inner.left.type == e.left.type
+    if not same or not _is_constant(inner.right) or _is_constant(e.left):
+        return e
+    return replace(inner, left=ir.Binary(e.type, e.op, e.left, inner.left))
 
 
 def _is_constant(e: ir.Expr) -> bool:

@@ -77,6 +77,29 @@ def test_factored_interpolation_is_explained(sum_: str, tmp_path: Path) -> None:
     assert not explained(library, "probe", inputs, "opencl", got).any()
 
 
+def test_components_are_rearranged_each_for_itself(tmp_path: Path) -> None:
+    """cranley_patterson under relaxed mathematics: one component loses its + 1 - 1, the other keeps - 1."""
+    source = (
+        "def probe(u: P) -> vec2:\n    d = u + (vec2(0.48853) - vec2(1.0))\n    return vec2(d.x + 1.0, d.y)\n"
+    )
+    library = library_of(tmp_path, source)
+    shift = np.float32(0.48853)
+    u = np.array([[0.4486155, 0.90600872]], np.float32)
+    got = np.stack([u[:, 0] + shift, (u[:, 1] + shift) - np.float32(1.0)], axis=-1)
+    assert explained(library, "probe", {"u": u}, "opencl", got, "opencl_relaxed").all()
+    got[0, 0] += np.float32(1e-6)
+    assert not explained(library, "probe", {"u": u}, "opencl", got, "opencl_relaxed").any()
+
+
+def test_constant_moved_outwards_is_explained(tmp_path: Path) -> None:
+    library = library_of(tmp_path, MIXED.format(sum="a + (b - 1.0)"))
+    a, b = (np.array([x], np.float32) for x in (0.155840933, 0.155642539))
+    got = (a + b) - np.float32(1.0)
+    inputs = {"a": a, "b": b, "c": a}
+    assert not permitted(library, "probe", inputs, "opencl_relaxed").contains(got).any()
+    assert explained(library, "probe", inputs, "opencl", got, "opencl_relaxed").all()
+
+
 @pytest.mark.parametrize("sum_", ["(1.0 - c) * a + b * b", "(2.0 - c) * a + c * b", "(1.0 + c) * a + c * b"])
 def test_other_sums_are_no_interpolations(sum_: str, tmp_path: Path) -> None:
     function = library_of(tmp_path, MIXED.format(sum=sum_)).function("probe")
