@@ -1,6 +1,6 @@
 """Speed of functions beside each other on one driver: interleaved, net of loop and inputs, one process.
 
-As `./dev bench` measures, in short form, because functions of a scene have parameters of their own: each lane
+As `vair report` measures, in short form, because functions of a scene have parameters of their own: each lane
 loads inputs once; eps times the last sum, with eps read at run time and 0, is added to every input, so that
 nothing can be hoisted or shared; independent chains stand side by side. The same kernel with the sum of the
 inputs in the function's place is the baseline of each. Rounds run forwards and backwards (A B B A), and the
