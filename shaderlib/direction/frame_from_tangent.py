@@ -38,3 +38,17 @@ def frame_from_tangent_apart(n: Direction, t: Direction) -> Frame:
     across = cross(n, t)
     bitangent = inverse_sqrt(max(dot(across, across), TINY_SQUARE)) * across
     return Frame(cross(bitangent, n), bitangent, n)
+
+
+@variant("frame_from_tangent")
+def frame_from_tangent_orthogonal(n: Direction, t: Direction) -> Frame:
+    """Right-handed frame of a normal and a tangent that are orthogonal already.
+
+    n           normal, kept as it is
+    t           tangent, orthogonal to n; kept as it is
+    returns     frame with bitangent = n x t
+    degenerate  t not orthogonal to n: tangent off by n.t, bitangent too short
+    form        one outer product, nothing normalised
+    source      elementary
+    """
+    return Frame(t, cross(n, t), n)

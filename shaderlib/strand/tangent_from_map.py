@@ -1,7 +1,11 @@
 """Tangent of a brushed surface from a texture."""
 
 from shaderlib.constants import TINY_SQUARE
-from shaderlib.direction.frame_from_tangent import frame_from_tangent, frame_from_tangent_apart
+from shaderlib.direction.frame_from_tangent import (
+    frame_from_tangent,
+    frame_from_tangent_apart,
+    frame_from_tangent_orthogonal,
+)
 from shaderlib.domains import Direction, MapTangent
 from shaderlib.lang import dot, inverse_sqrt, max, variant, vec2, vec3
 from shaderlib.numeric.safe_normalize import SCALE_UP
@@ -41,6 +45,25 @@ def tangent_from_map_apart(n: Direction, t: Direction, map_tangent: MapTangent) 
     source       Isidoro and Brennan 2002, Per-Pixel Strand Based Anisotropic Lighting
     """
     frame = frame_from_tangent_apart(n, t)
+    texel = SCALE_UP * vec2(map_tangent.x, map_tangent.y)
+    squared = dot(texel, texel)
+    unit = inverse_sqrt(max(squared, TINY_SQUARE)) * texel if squared > TINY_SQUARE else vec2(1.0, 0.0)
+    return unit.x * frame.tangent + unit.y * frame.bitangent
+
+
+@variant("tangent_from_map")
+def tangent_from_map_orthogonal(n: Direction, t: Direction, map_tangent: MapTangent) -> vec3:
+    """Per-pixel strand tangent of a brushed surface, for tangents that are orthogonal to the normal already.
+
+    n            surface normal
+    t            tangent of the surface, along the first texture coordinate; orthogonal to n
+    map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as tangent_from_map
+    returns      the texel's direction in the surface, a unit vector orthogonal to n
+    degenerate   texel without x and y: t; t not orthogonal to n: off by n.t
+    form         tangent_from_map over frame_from_tangent_orthogonal
+    source       Isidoro and Brennan 2002, Per-Pixel Strand Based Anisotropic Lighting
+    """
+    frame = frame_from_tangent_orthogonal(n, t)
     texel = SCALE_UP * vec2(map_tangent.x, map_tangent.y)
     squared = dot(texel, texel)
     unit = inverse_sqrt(max(squared, TINY_SQUARE)) * texel if squared > TINY_SQUARE else vec2(1.0, 0.0)
