@@ -26,6 +26,14 @@ def columns(inputs: Mapping[str, Any]) -> list[Any]:
     return [c for v in inputs.values() for c in (columns(v) if isinstance(v, Mapping) else [v])]
 
 
+@pytest.mark.parametrize("name", ["sin_angle", "to_local"])
+def test_draws_are_joined_field_by_field(name: str) -> None:
+    found = list(engine.draws(load_library().function(name), 30, 20))
+    apart = [columns(d.inputs) for d in found]
+    for k, whole in enumerate(columns(together(found).inputs)):
+        assert np.array_equal(whole, np.concatenate([parts[k] for parts in apart]))
+
+
 @pytest.mark.parametrize("name", ["sin_angle", "to_local", "bessel_i0e"])
 def test_draws_take_every_family_and_can_be_repeated(name: str) -> None:
     function = load_library().function(name)

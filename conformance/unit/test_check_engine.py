@@ -193,6 +193,32 @@ def test_overlapping_bounds_are_judged_each(check: Check) -> None:
     assert [[m.bound for m in f.missed] for f in result.failures] == [["absolute <= 0.125: tight"]]
 
 
+def test_accuracy_is_measured_where_any_bound_holds(check: Check) -> None:
+    low, high = (
+        BOUND.format("a part", "derived", f"where = {{ x = {ends} }}") for ends in ("[0, 1]", "[2, 3]")
+    )
+    result = check(low + high, [(0, 1.25, 1), (1, 1, 1), (2, 1.25, 1), (9, 5, 1)])
+    assert [a.lanes for a in result.accuracy] == [3]
+    assert [b.lanes for b in result.bounds] == [2, 1]
+
+
+def test_failures_of_several_bounds_come_in_the_order_of_the_worst(check: Check) -> None:
+    tight = BOUND.format("tight", "derived", "where = { x = [1, 1] }").replace("0.5", "0.125")
+    result = check(ALL + tight, [(0, 3, 0), (1, 2, 0)])
+    assert [f.identity.lane for f in result.failures] == [1, 0], "16 times its bound before 6 times"
+
+
+def test_program_is_kept_with_failures_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    library = library_with(tmp_path, ALL)
+    monkeypatch.setattr(prepared, "find_reference", lambda *_: lambda x: x)
+    draws = [Draw("draw", 2, 7, {"x": np.ones(2, np.float32)})]
+    for error, kept in ((0.0, ""), (2.0, "the text")):
+        on = Backend("numpy", "d", lambda *given, e=error: given[2]["x"] + e, text=lambda *_: "the text")
+        result = check_function(library, "probe", on, draws, intervals=False)
+        assert result.program == kept
+        assert len(result.emitted) == 16
+
+
 def test_bounds_of_other_targets_are_left_out(check: Check) -> None:
     mine = ALL.replace("0.5", "4.0") + 'targets = ["glsl", "opencl"]\n'
     other = ALL + 'targets = ["wgsl"]\n'
