@@ -193,6 +193,13 @@ def complete(result: dict[str, Any], load: dict[str, list[float]]) -> dict[str, 
     return whole
 
 
-def as_json(data: Any) -> str:
-    """The text of a recorded file."""
-    return json.dumps(data, indent=1, ensure_ascii=True) + "\n"
+def as_json(result: Mapping[str, Any]) -> str:
+    """The text of a recorded file: one line for every entry of a list, so that a changed result is one line."""
+    rows = []
+    for key, value in result.items():
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            entries = ",\n  ".join(json.dumps(v) for v in value)
+            rows.append(f" {json.dumps(key)}: [\n  {entries}\n ]")
+        else:
+            rows.append(f" {json.dumps(key)}: {json.dumps(value)}")
+    return "{\n" + ",\n".join(rows) + "\n}\n"

@@ -38,6 +38,7 @@ from conformance.bench.inputs import declared, groups, lanes, within
 from conformance.bench.kernels import FLAT, LATENCY, THROUGHPUT, Mode
 from conformance.bench.ratios import net_ratio, spread, straightness
 from conformance.bench.record import (
+    as_json,
     method_data,
     rounded,
     slug,
@@ -278,3 +279,11 @@ def test_drivers_are_queued_by_weight() -> None:
         places((), ("softpipe-compute",))
     with pytest.raises(UserError, match='did you mean "lavapipe"'):
         places((), ("lavapip",))
+
+
+def test_a_recorded_file_has_a_line_per_function(library: Library) -> None:
+    result = small_result(library)
+    text = as_json(result)
+    assert json.loads(text) == result
+    for f in result["functions"]:
+        assert sum(f'"name": "{f["name"]}"' in line for line in text.splitlines()) == 1
