@@ -194,7 +194,7 @@ def complete(result: dict[str, Any], load: dict[str, list[float]]) -> dict[str, 
 
 
 def as_json(result: Mapping[str, Any]) -> str:
-    """The text of a recorded file: one line for every entry of a list, so that a changed result is one line."""
+    """The text of a recorded file: one line per entry of a list, so that a changed result is one line."""
     rows = []
     for key, value in result.items():
         if isinstance(value, list) and value and isinstance(value[0], dict):
