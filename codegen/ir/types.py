@@ -63,9 +63,10 @@ class Array(Struct):
 Type = Scalar | Vector | Struct
 
 
-def array_of(element: Scalar | Vector, size: int) -> Array:
-    """The array type, named like vec3[8]."""
-    return Array(f"{element.name}[{size}]", tuple(Field(str(k), element) for k in range(size)), element)
+def array_of(element: Scalar | Vector, size: int, domain: Domain | None = None) -> Array:
+    """The array type, named like vec3[8]; the domain of its elements lets them be drawn one by one."""
+    fields = tuple(Field(str(k), element, domain) for k in range(size))
+    return Array(f"{element.name}[{size}]", fields, element)
 
 
 F32, I32, U32, BOOL = Scalar("f32"), Scalar("i32"), Scalar("u32"), Scalar("bool")

@@ -75,7 +75,7 @@ def test_arrays_are_numbered(runtime: TimedRuntime, options: KernelOptions) -> N
     colour = [[1.0, 0.5, 0.25]] * lights.LIGHTS
     table = specialise(extended, lights.NAME, constants={"light": colour}, new_name="table_sum")
     extended = extended.with_functions([table.function])
-    inputs = {name: a[: 4 if options.source == "literal" else None] for name, a in lights.inputs().items()}
+    inputs = {name: a[: 2 if options.source == "literal" else None] for name, a in lights.inputs().items()}
     judge = DEFAULT_TABLES[runtime.device.target]
     for name, given in ((lights.NAME, inputs), ("table_sum", table.arguments(inputs))):
         got = execute(extended, name, given, runtime, options=options)

@@ -27,6 +27,7 @@ from codegen.kernels import kernel
 from codegen.library import load_library
 from codegen.passes.operations import operations
 from codegen.passes.specialise import specialise
+from conformance.cases.domains import UNIT_TOLERANCE
 from conformance.cases.drawing import draw
 from conformance.unit.support.dialects import DIALECTS, ONE_PER_TARGET, dialect_id, validate
 from conformance.unit.support.lights import LANES, LIGHTS, inputs, lambert_sum
@@ -65,6 +66,14 @@ def test_sum_over_an_array_and_its_intervals() -> None:
         allowed = permitted(EXTENDED, "lambert_sum", x, table)
         assert allowed.guaranteed.all()
         assert allowed.contains(single).all()
+
+
+def test_elements_are_drawn_from_their_domain() -> None:
+    drawn = draw(lambert_sum(), "uniform", LANES, 7)
+    assert list(drawn["l"]) == [str(k) for k in range(LIGHTS)]
+    assert np.abs(np.linalg.norm(drawn["l"]["3"], axis=-1) - 1.0).max() < UNIT_TOLERANCE
+    single = evaluate(EXTENDED, "lambert_sum", drawn)
+    assert permitted(EXTENDED, "lambert_sum", drawn, "wgsl").contains(single).all()
 
 
 def test_index_that_lanes_choose() -> None:

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from codegen.evaluate import evaluate
 from codegen.ir import nodes as ir
-from codegen.ir.domains import Interval
+from codegen.ir.domains import Interval, Unit
 from codegen.ir.types import BOOL, F32, VEC3, Field, Struct
 from codegen.library import load_library
 from codegen.passes.inline import Inliner, joined
@@ -31,6 +32,8 @@ from conformance.cases.drawing import draw, families_for
 LIBRARY = load_library()
 LANES = 600
 SEED = 20261122
+FACT = 0.3
+"""Least cosine between two directions that a fact states."""
 NAMES = sorted(LIBRARY.public)
 SAMPLE = sorted({"fakefur_shade", "safe_normalize", "pcg_hash", "latlong_uv", "brushed_shade", *NAMES[::16]})
 """Directions, guards, integers, angles, and one of every sixteen."""
@@ -73,20 +76,36 @@ def flat(inputs: dict[str, object], path: str = "") -> dict[str, object]:
     return found
 
 
-def check(name: str) -> None:
+def directions(name: str) -> tuple[str, ...]:
+    """The function's first two directions."""
+    found = [p.name for p in LIBRARY.function(name).parameters if isinstance(p.domain, Unit)]
+    return tuple(found[:2]) if len(found) > 1 else ()
+
+
+def facing(name: str, inputs: dict[str, Any]) -> Any:
+    """Mask of the inputs whose first two directions keep the fact."""
+    a, b = (np.asarray(inputs[path], np.float64) for path in directions(name))
+    return np.einsum("nk,nk->n", a, b) >= FACT
+
+
+def check(name: str, *, with_fact: bool = False) -> None:
     values, wanted, made = probe(name)
     ranges = Ranges(values)
+    if with_fact:
+        fact = Fact(f"dot({', '.join(directions(name))})", FACT)
+        ranges.add_fact(*Subject(LIBRARY.function(name)).fact(values, fact))
     library = LIBRARY.with_functions([made])
     narrow = 0
     for family in [*families_for(LIBRARY.function(name).parameters), "uniform"]:
         inputs = draw(LIBRARY.function(name), family, LANES, SEED)
         got = evaluate(library, "probe", flat(inputs), "float32")
         assert isinstance(got, dict)
+        keeps = facing(name, inputs) if with_fact else np.ones(LANES, np.bool_)
         for e, value in zip(wanted, got.values(), strict=True):
             columns = np.asarray(value, np.float64).reshape(LANES, -1).T
             for bound, column in zip(ranges.bounds(e), columns, strict=True):
                 narrow += bound.finite
-                outside = ~((column >= bound.low) & (column <= bound.high))
+                outside = ~((column >= bound.low) & (column <= bound.high)) & keeps
                 assert not outside.any() or not bound.finite, (
                     f"{name}, {family}, seed {SEED}: {values.show(e)} = {column[outside][0]} outside {bound}"
                 )
@@ -96,6 +115,17 @@ def check(name: str) -> None:
 @pytest.mark.parametrize("name", SAMPLE)
 def test_no_value_leaves_its_range(name: str) -> None:
     check(name)
+
+
+@pytest.mark.parametrize("name", [name for name in SAMPLE if directions(name)])
+def test_no_value_leaves_its_range_where_a_fact_holds(name: str) -> None:
+    check(name, with_fact=True)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", [name for name in NAMES if directions(name)])
+def test_no_value_leaves_its_range_in_any_function_where_a_fact_holds(name: str) -> None:
+    check(name, with_fact=True)
 
 
 @pytest.mark.nightly

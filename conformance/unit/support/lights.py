@@ -11,7 +11,8 @@ from codegen.ir.types import F32, I32, VEC3, array_of
 
 LIGHTS = 12
 LANES = 50
-VECTORS = array_of(VEC3, LIGHTS)
+VECTORS = array_of(VEC3, LIGHTS, Unit())
+COLOURS = array_of(VEC3, LIGHTS, Interval(0.0, 10.0))
 NAME = "lambert_sum"
 
 
@@ -29,7 +30,7 @@ def lambert_sum() -> ir.Function:
     parameters = (
         ir.Parameter("n", VEC3, Unit()),
         ir.Parameter("l", VECTORS, Unit()),
-        ir.Parameter("light", VECTORS, Interval(0.0, 10.0)),
+        ir.Parameter("light", COLOURS, Interval(0.0, 10.0)),
     )
     body = (
         ir.Let("total", ir.Construct(VEC3, (ir.Const(F32, 0.0),)), True),
