@@ -10,12 +10,12 @@ from rich.console import Console
 
 from codegen.backends import open_runtime
 from codegen.errors import UserError
+from codegen.files import write_folder
 from codegen.library import load_library
 from codegen.scene.build import Builder
 from codegen.scene.document import read_scene
 from codegen.scene.markdown import as_markdown, summary
 from codegen.scene.report import as_data, as_json
-from codegen.scene.write import move_into
 
 NO_DRIVERS = "left out by --no-drivers"
 
@@ -41,7 +41,7 @@ def command(scene_file: Path, output: Path, no_drivers: bool, no_timing: bool) -
     data = as_data(outcome)
     files = {result.file: result.text for result in outcome.targets}
     files |= {"report.md": as_markdown(data), "report.json": as_json(data)}
-    move_into(output, files)
+    write_folder(output, {name: text.encode("utf-8") for name, text in files.items()})
     click.echo(summary(data, output))
 
 

@@ -18,7 +18,7 @@ from codegen.passes.specialise import Specialised, specialise
 from codegen.scene import environment, spirv, stopwatch, text
 from codegen.scene.document import Scene
 from codegen.scene.environment import ConstantLight, MapError
-from codegen.scene.errors import MARGIN, Floats, Reference, as_floats
+from codegen.scene.errors import Floats, Reference, as_floats
 from codegen.scene.general import General, general_function
 from codegen.scene.knowledge import Knowledge, knowledge, model_ranges
 from codegen.scene.points import SEED, Points, draw
@@ -105,12 +105,12 @@ class Builder:
         points = draw(self.scene, general, SEARCH_POINTS)
         reference = Reference.of(library, general.function.name, points)
         search = Search(library, general, reference, model_ranges(self.scene, general))
+        self.check_budget(reference.rounding)
         reducer = Reducer(library, general, known, reference, search, self.scene.function)
         reduced = {}
         for target in self.scene.dialects:
             self.say(f"searching for {target}")
             reduced[target] = reducer.reduced(Prices.of(library, target), self.scene.budget)
-            self.check_budget(reduced[target])
         if not reducer.exact().function.parameters:
             raise UserError(
                 f"{self.scene.path}: nothing varies: the scene is one colour and needs no function"
@@ -143,13 +143,13 @@ class Builder:
         pixels = environment.read_map(lights.environment, f"{self.scene.path}: [lights] environment")
         return environment.median_cut(pixels, lights.environment_lights), pixels
 
-    def check_budget(self, reduced: Reduced) -> None:
-        """Refuse a budget that not even the exact passes meet."""
+    def check_budget(self, rounding: float) -> None:
+        """Refuse a budget below what float32 itself takes."""
         budget = self.scene.budget
-        if budget > 0.0 and reduced.error.largest * MARGIN > budget:
+        if 0.0 < budget < rounding:
             raise UserError(
-                f"{self.scene.path}: [scene] budget: no variant meets {budget:.3g}; the best achievable on "
-                f"{reduced.target} is {reduced.error.largest * MARGIN:.3g}, which rounding to float32 takes"
+                f"{self.scene.path}: [scene] budget: no variant meets {budget:.3g}; the best achievable is "
+                f'{rounding:.2g}, the rounding of {self.scene.model.function.name} itself; or ask for "exact"'
             )
 
     def proven(
