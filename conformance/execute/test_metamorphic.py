@@ -15,9 +15,11 @@ and so are results that only a rearrangement of sums explains. A damaged rewriti
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from codegen.ir import nodes as ir
@@ -27,7 +29,7 @@ from codegen.library import Library, load_library
 from conformance.fuzz.choices import Choice
 from conformance.metamorphic import inputs, source
 from conformance.metamorphic.engine import Report, run_pairs
-from conformance.metamorphic.pairs import Pair, draw, source_pair
+from conformance.metamorphic.pairs import Pair, draw, input_pair, source_pair
 from conformance.metamorphic.plan import input_pairs, library_pairs, program_pairs, random_programs
 from conformance.metamorphic.relation import Changed, SourceRelation
 from conformance.metamorphic.source.tools import changed_body
@@ -89,6 +91,19 @@ def test_every_rewriting_makes_well_formed_programs(tmp_path: Path) -> None:
         extended = ExtendedLibrary(base, {f.name: f for f in pair.added})
         verify_selection(extended.select([pair.second.name]).functions)
     assert {p.relation for p in pairs} == {r.name for r in source.RELATIONS}
+
+
+def test_opposite_light_and_viewer_are_left_out_of_turns(runtime: TimedRuntime) -> None:
+    """There half_vector falls back on an axis, which turns with nothing."""
+    (relation,) = [r for r in inputs.RELATIONS if r.name == "quarter_turn"]
+    function = LIBRARY.function("scheuermann_shade")
+    drawn = draw(function, LANES, 1)
+    drawn["v"][LANES // 2 :] = -drawn["l"][LANES // 2 :]
+    pair = input_pair(relation, function, drawn)
+    assert np.array_equal(pair.first.inputs["v"][: LANES // 2], drawn["v"][: LANES // 2])
+    assert not run_pairs(LIBRARY, [pair], [runtime], LANES).failures
+    careless = replace(relation, silent=None)
+    assert run_pairs(LIBRARY, [input_pair(careless, function, drawn)], [runtime], LANES).failures
 
 
 def damaged(function: ir.Function, library: Library, choice: Choice) -> Changed | None:

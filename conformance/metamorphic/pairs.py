@@ -16,7 +16,14 @@ from codegen.library import Library
 from conformance import cases
 from conformance.fuzz.choices import Choice
 from conformance.fuzz.reduce import settled
-from conformance.metamorphic.relation import Changed, Ends, InputRelation, SourceRelation, unchanged
+from conformance.metamorphic.relation import (
+    Changed,
+    Ends,
+    InputRelation,
+    SourceRelation,
+    map_arrays,
+    unchanged,
+)
 from conformance.metamorphic.source.calls import inlined
 from conformance.programs.batch import Job
 
@@ -94,7 +101,12 @@ def _calling_apart(function: Function, changed: Changed, relation: SourceRelatio
 
 
 def input_pair(relation: InputRelation, function: Function, inputs: dict[str, Any]) -> Pair:
-    """A function on two inputs."""
+    """A function on two inputs. Lanes of which the relation says nothing repeat the first other one."""
+    silent = relation.silent(inputs) if relation.silent else np.zeros(1, np.bool_)
+    if silent.any():
+        first, lanes = int(np.argmin(silent)), np.arange(len(silent))
+        chosen = np.where(silent, first, lanes)
+        inputs = {name: map_arrays(value, lambda a: a[chosen]) for name, value in inputs.items()}
     choice = Choice(seed_of(relation.name, function.name))
     return Pair(
         relation.name,

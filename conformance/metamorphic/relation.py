@@ -42,6 +42,7 @@ class InputRelation:
     functions   the functions for which it holds
     is_exact    the changed inputs are exact: both sides mean one and the same real number
     tolerance   how far the two sides may differ in float64, relative to 1 + |value|
+    silent      mask of the inputs of which the relation says nothing; None: there are none
     """
 
     name: str
@@ -51,6 +52,7 @@ class InputRelation:
     result: Callable[[Function, Ends], Ends]
     is_exact: bool
     tolerance: float
+    silent: Callable[[Inputs], Array] | None = None
 
 
 def unchanged(function: Function, ends: Ends) -> Ends:

@@ -25,7 +25,7 @@ from conformance.check.backend import Backend
 from conformance.check.draws import Draw
 from conformance.check.engine import check_function
 from conformance.check.failure import FINITE, PERMITTED, WITHIN
-from conformance.check.interval import OUTSIDE, UNGUARANTEED
+from conformance.check.interval import OUTSIDE, UNGUARANTEED, IntervalResult
 from conformance.check.report import interval_text
 from conformance.check.result import FunctionResult
 from conformance.mutation.fake_backend import SINE_ERROR, fake_backend
@@ -75,6 +75,10 @@ def counts(r: FunctionResult) -> tuple[int, int, int, int, int]:
     assert r.permitted is not None
     p = r.permitted
     return p.lanes, p.inside, p.rearranged, p.outside, p.unguaranteed
+
+
+def test_nothing_is_counted_beforehand() -> None:
+    assert IntervalResult("wgsl") == IntervalResult("wgsl", 0, 0, 0, 0, 0, 0.0, "", {})
 
 
 def test_results_inside_and_outside_are_counted(judge: Judge) -> None:

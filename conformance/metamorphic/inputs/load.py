@@ -28,6 +28,7 @@ def _relation(name: str, entry: dict[str, Any]) -> InputRelation:
         result,
         is_exact=entry["exact"],
         tolerance=float(entry["tolerance"]),
+        silent=turns.opposed if entry["kind"] in ("quarter turn", "mirror", "rotation") else None,
     )
 
 

@@ -19,12 +19,23 @@ MIRROR = ((0, 1.0), (1, -1.0), (2, 1.0))
 ANGLE = 0.7390851332151607
 """Of the general rotation, about the axis (1, 1, 1): no component stays what it was."""
 
+OPPOSED_SQUARE = 4.0e-12
+"""Of |l + v|^2: half_vector falls back on an axis of its own where it is below 1e-12, its rounding aside."""
+
 Axes = tuple[tuple[int, float], ...]
 
 
 def permuted(axes: Axes, a: Array) -> Array:
     """A vector (N, 3) with its components permuted and negated."""
     return np.stack([a[:, source] * a.dtype.type(sign) for source, sign in axes], axis=-1)
+
+
+def opposed(inputs: Inputs) -> Array:
+    """Mask of the lanes whose light and viewer are opposite: what halves them turns with nothing."""
+    directions = [np.asarray(inputs[name], np.float64) for name in ("l", "v") if name in inputs]
+    if len(directions) < 2:
+        return np.zeros(1, np.bool_)
+    return np.asarray(np.sum(sum(directions) ** 2, axis=-1) < OPPOSED_SQUARE)
 
 
 def _on_directions(type_: Type, value: Any, change: Any, units: bool) -> Any:
