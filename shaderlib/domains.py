@@ -39,9 +39,10 @@ TangentShift = Annotated[f32, Interval(-2.0, 2.0)]
 # Distance below the outer boundary of a coat, in scene units.
 Depth = Annotated[f32, Interval(0.0, 1.0e6, scale="log")]
 
-# Extinction per unit length, and a path length: see constants.COAT_LIMIT.
-Extinction = Annotated[f32, Interval(0.0, 1.0e18, scale="log")]
-PathLength = Annotated[f32, Interval(0.0, 1.0e18, scale="log")]
+# Extinction per unit length, and a path length: see constants.COAT_LIMIT. A product of two that are positive
+# and below 1e-9 is nothing to look at, and denormal numbers are slow enough to hide every difference in cost.
+Extinction = Annotated[f32, Interval(0.0, 1.0e18, scale="log", least=1.0e-9)]
+PathLength = Annotated[f32, Interval(0.0, 1.0e18, scale="log", least=1.0e-9)]
 
 # Texel of a tangent map, decoded from [0, 1] to [-1, 1].
 MapTangent = Annotated[vec3, Interval(-1.0, 1.0)]
