@@ -11,6 +11,8 @@ from conformance.check.report import share
 
 Recorded = Mapping[str, Mapping[str, Any]]
 
+FORMAT = 2
+"""Of the recorded files."""
 JUDGED = "judged"
 STAGES = ("emit", "compile", "execute", JUDGED)
 """How far a function comes: the stage where it stopped, or judged."""
@@ -34,11 +36,13 @@ The maxima are the largest errors *found*: lower bounds of the true ones. Modes 
 
 def page(recorded: Recorded) -> str:
     """The whole page, a function of the recorded files alone."""
+    told = _drivers(recorded)
+    recorded = _present(recorded)
     return "\n".join(
         [
             INTRODUCTION,
             "## Drivers\n",
-            *_drivers(recorded),
+            *told,
             "\n## Counts\n",
             "Functions that are emitted, compile, execute, are permitted, and within all their bounds.\n",
             *_counts(recorded),
@@ -61,12 +65,18 @@ def page(recorded: Recorded) -> str:
     )
 
 
+def _present(recorded: Recorded) -> Recorded:
+    """The files of the present format."""
+    return {stem: data for stem, data in recorded.items() if data["format"] == FORMAT}
+
+
 def _drivers(recorded: Recorded) -> list[str]:
     rows = ["| results | driver | target | what it says of itself |", "|---|---|---|---|"]
     for stem, data in recorded.items():
         d = data["device"]
         told = "; ".join((d["api"], d["driver"], d["device"])).replace("|", "/")
-        rows.append(f"| [{stem}]({stem}.json) | {data['title']} | {d['target']} | {told} |")
+        old = "" if data["format"] == FORMAT else " (of an older format, left out below: record it again)"
+        rows.append(f"| [{stem}]({stem}.json){old} | {data['title']} | {d['target']} | {told} |")
     return rows
 
 

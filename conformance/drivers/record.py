@@ -23,12 +23,12 @@ from conformance.check.failure import FINITE, PERMITTED, WITHIN
 from conformance.check.interval import OUTSIDE
 from conformance.check.result import FunctionResult
 from conformance.drivers.known import excess
+from conformance.drivers.matrix import FORMAT
 from conformance.drivers.modes import Mode
 from targets import Device
 from targets.drivers import Driver
 
 FOLDER = Path(__file__).parents[1] / "results"
-FORMAT = 2
 WRITE_SECONDS = 20.0
 """A run that is interrupted loses at most what it found in this time."""
 _TOKENS = re.compile(r"(?P<name>\w+)(?: = |: )|\[(?P<words>[0-9a-f ]+)\]|(?P<brace>[{}])")
@@ -69,7 +69,7 @@ class Recorder:
         """Put everything so far into the driver's file."""
         data = self._data()
         new = mode_data(self.library, self.mode, self.results, self.today)
-        data["modes"][self.mode.name] = merged(data["modes"].get(self.mode.name), new)
+        data["modes"][self.mode.name] = merged(data["modes"].get(self.mode.name), new, self.library.public)
         whole = {
             "format": FORMAT,
             "driver": self.driver.name,
@@ -85,7 +85,8 @@ class Recorder:
     def _data(self) -> dict[str, Any]:
         data: dict[str, Any] = {"modes": {}}
         if self.path.exists():
-            data = json.loads(self.path.read_text(encoding="utf-8"))
+            found = json.loads(self.path.read_text(encoding="utf-8"))
+            data = found if found["format"] == FORMAT else data
         return data
 
 
@@ -110,12 +111,10 @@ def fingerprint(library: Library, name: str, target: str, mode: Mode) -> str:
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 
-def merged(before: dict[str, Any] | None, new: dict[str, Any]) -> dict[str, Any]:
-    """A mode's data renewed: functions that were not run keep what was recorded."""
-    if before is None:
-        return new
-    functions = {**before["functions"], **new["functions"]}
-    return {**new, "functions": {name: functions[name] for name in sorted(functions)}}
+def merged(before: dict[str, Any] | None, new: dict[str, Any], public: Iterable[str]) -> dict[str, Any]:
+    """A mode's data renewed: functions that were not run keep what was recorded, unless they are gone."""
+    functions = {**(before["functions"] if before is not None else {}), **new["functions"]}
+    return {**new, "functions": {name: functions[name] for name in public if name in functions}}
 
 
 def mode_data(library: Library, mode: Mode, results: Iterable[FunctionResult], today: date) -> dict[str, Any]:

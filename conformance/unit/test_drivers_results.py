@@ -87,6 +87,15 @@ def test_functions_that_were_not_run_keep_what_was_recorded(tmp_path: Path) -> N
     assert measured == {"sin_angle": 2.5e-7, "mirror": 3e-7}
 
 
+def test_functions_that_are_gone_leave_the_record(tmp_path: Path) -> None:
+    path = kept(tmp_path, "default", result("sin_angle", 2.5e-7), result("mirror", 1e-7))
+    text = path.read_text(encoding="utf-8").replace('"mirror":', '"mirror_of_old":')
+    path.write_text(text, encoding="utf-8")
+    kept(tmp_path, "default", result("half_vector", 1e-7))
+    functions = read_all(tmp_path)[path.stem]["modes"]["default"]["functions"]
+    assert set(functions) == {"sin_angle", "half_vector"}
+
+
 def test_interrupted_run_keeps_what_it_had(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(record, "WRITE_SECONDS", 0.0)
     interrupted = recorder(tmp_path, "default")
@@ -170,6 +179,18 @@ def test_page_tells_shares_and_failures(tmp_path: Path) -> None:
     assert f"| to_local | pocl-3.1+debian | default | permitted | {told} |" in text
     assert "| half_vector | 1.5 ULP |" in text
     assert "| sin_angle | 0.25 steps |" in text
+
+
+def test_file_of_an_older_format_is_named_and_replaced(tmp_path: Path) -> None:
+    path = kept(tmp_path, "default", result("sin_angle", 2.5e-7))
+    old = path.read_text(encoding="utf-8").replace('"format": 2', '"format": 1')
+    path.write_text(old.replace('"permitted"', '"allowed"'), encoding="utf-8")
+    text = page(read_all(tmp_path))
+    assert "of an older format, left out below: record it again" in text
+    assert "| sin_angle |" not in text
+    assert recorder(tmp_path, "default").current(["sin_angle"]) == []
+    kept(tmp_path, "pair", result("mirror", 1e-7))
+    assert set(read_all(tmp_path)[path.stem]["modes"]) == {"pair"}
 
 
 def test_committed_page_is_up_to_date() -> None:
