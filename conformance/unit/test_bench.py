@@ -29,7 +29,7 @@ from codegen.ir.domains import Interval
 from codegen.ir.types import leaves
 from codegen.library import Library, load_library
 from codegen.readme import speed
-from conformance import cases
+from conformance import cases, peers
 from conformance.bench import kernels
 from conformance.bench.accuracy import ulps
 from conformance.bench.emission import emit
@@ -39,6 +39,7 @@ from conformance.bench.kernels import FLAT, LATENCY, THROUGHPUT, Mode
 from conformance.bench.ratios import net_ratio, spread, straightness
 from conformance.bench.record import (
     as_json,
+    function_data,
     method_data,
     rounded,
     slug,
@@ -279,6 +280,14 @@ def test_drivers_are_queued_by_weight() -> None:
         places((), ("softpipe-compute",))
     with pytest.raises(UserError, match='did you mean "lavapipe"'):
         places((), ("lavapip",))
+
+
+def test_peers_are_members_that_stand_for_nothing() -> None:
+    whole_library = peers.library()
+    (group,) = groups(whole_library, ["sin_angle"])
+    (foreign,) = [f for f in group.members if f.name in peers.PEERS]
+    assert function_data(whole_library, foreign, "sin_angle")["kind"] == "peer"
+    assert foreign.name not in whole(whole_library, group, backend("numpy"), 20, 5)
 
 
 def test_a_recorded_file_has_a_line_per_function(library: Library) -> None:

@@ -3,7 +3,7 @@
 Plan.
   fronts        of random points no member is dominated, and every other point is by a member
   data          report.json is whole, is read again, what is none is refused; names of variants are short
-  records       worst inputs are replayed by `vair check --replay`
+  records       worst inputs are replayed by `vair check --replay`; peers' forms stand beside ours
   page          every function, driver and command is in it; nothing comes from the network; data cannot end
                 its script element
   picture       a PNG, the same bytes for the same figures
@@ -35,7 +35,7 @@ from conformance.report.page import embedded, number, page
 from conformance.report.pareto import dominates, front
 from conformance.report.picture import overview
 from conformance.report.scenes import read_scene_report
-from conformance.report.view import short_name
+from conformance.report.view import short_name, view
 from conformance.report.write import keep, write
 from conformance.unit.support.results import MESA, POCL, small_result
 
@@ -111,6 +111,20 @@ def test_worst_inputs_can_be_replayed(library: Library, report: dict[str, Any], 
     (case,) = cases_of(library, str(place))  # one input is the worst in both units
     assert (case.function, case.target) == ("sin_angle", "glsl")
     assert np.array_equal(case.draw().inputs["a"], [[1.0, 0.0, 0.0]])
+
+
+def test_a_peers_form_stands_beside_ours(library: Library, report: dict[str, Any]) -> None:
+    """It is drawn, measured again by our function's name, never on a front, and no function to replay."""
+    result = json.loads(json.dumps(report["drivers"][0]))
+    entry = next(f for f in result["functions"] if f["name"] == "sin_angle_cosine")
+    entry |= {"name": "peer_sine_unclamped", "kind": "peer"}
+    made = build(library, [result], command="")
+    assert not any("peer_sine_unclamped" in f["members"] for f in made["fronts"])
+    assert not worst.records(result, entry)
+    group = next(g for g in view(library, made)["groups"] if g["name"] == "sin_angle")
+    shown = next(e for e in group["entries"] if e["kind"] == "peer")
+    assert (shown["tag"], shown["replay"], shown["front"]) == ("sine unclamped", "", [])
+    assert shown["again"].endswith("--function sin_angle --target glsl")
 
 
 def test_the_page_is_whole(report: dict[str, Any], written: Path) -> None:
