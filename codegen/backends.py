@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Sequence
 from typing import Any
 
 from codegen.emit.dialect import Dialect
@@ -31,13 +32,24 @@ def dialects_of(target: str) -> dict[str, Dialect]:
 
 
 def complete_program(
-    target: str, library: str, body: str, version: str | None = None, form: str = "plain"
+    target: str,
+    library: str,
+    body: str,
+    version: str | None = None,
+    form: str = "plain",
+    textures: Sequence[str] = (),
 ) -> str:
     """A library text and the statements of an entry point as one program; see targets.harness."""
     harness: Any = importlib.import_module("targets.harness")
     options = {} if version is None else {"version": version}
-    text: str = harness.complete_program(target, library, body, form=form, **options)
+    text: str = harness.complete_program(target, library, body, form=form, textures=textures, **options)
     return text
+
+
+def texture_data(levels: tuple[Any, ...], repeat_u: bool, repeat_v: bool) -> Any:
+    """A map as runtimes take it: targets.textures.TextureData."""
+    textures: Any = importlib.import_module("targets.textures")
+    return textures.TextureData(levels, repeat_u, repeat_v)
 
 
 def open_runtime(target: str) -> Any:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from codegen.backends import dialect
+from codegen.backends import dialect, texture_data
 from codegen.errors import UserError
 from codegen.evaluate.arrays import Array, Value, arithmetic, convert_inputs
+from codegen.evaluate.interpreter import with_edges
+from codegen.evaluate.textures import as_map
 from codegen.ir.types import BOOL, F16, F32, Scalar, Struct, Type, Vector, element_of, leaves
 from codegen.kernels import PLAIN, KernelOptions, called_type, kernel, literal_cases, literal_kernel
 from codegen.library import Library
@@ -31,7 +33,7 @@ class Runtime(Protocol):
     @property
     def device(self) -> Device: ...
 
-    def run(self, program: str, words: Words, slots_out: int) -> Words: ...
+    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[Any] = ()) -> Words: ...
 
 
 def execute(
@@ -59,8 +61,12 @@ def execute(
         out = _execute_literals(library, name, function.returns, arrays, count, runtime, options)
         return unflatten(function.returns, out)
     program = kernel(library, name, runtime.device.target, options)
+    arrays = with_edges(function, arrays)
     words = flatten([arrays[p.name] for p in function.parameters], count)
-    out = runtime.run(program, words, len(leaves(function.returns)))
+    maps = [t for p in function.parameters if (t := as_map(arrays[p.name])) is not None]
+    # Runtimes that know no maps are asked as they always were.
+    further = {"textures": [texture_data(t.levels, t.repeat_u, t.repeat_v) for t in maps]} if maps else {}
+    out = runtime.run(program, words, len(leaves(function.returns)), **further)
     return unflatten(function.returns, out)
 
 
@@ -100,12 +106,14 @@ def _rounded(type_: Type, value: Value) -> Value:
         return {f.name: _rounded(f.type, value[f.name]) for f in type_.fields}
     if element_of(type_) != F16:
         return value
-    assert not isinstance(value, dict)
+    assert isinstance(value, np.ndarray)
     with np.errstate(over="ignore"):  # beyond the largest half: infinite
         return value.astype(np.float16).astype(np.float32)
 
 
 def _lanes(value: Value, start: int, stop: int) -> Value:
+    if as_map(value) is not None:
+        return value
     if isinstance(value, dict):
         return {name: _lanes(part, start, stop) for name, part in value.items()}
     return value[start:stop]
@@ -116,6 +124,8 @@ def flatten(values: list[Value], count: int) -> Words:
     rows: list[Array] = []
 
     def visit(value: Value) -> None:
+        if as_map(value) is not None:
+            return
         if isinstance(value, dict):
             for part in value.values():
                 visit(part)
@@ -153,6 +163,7 @@ def unflatten(type_: Type, words: Words) -> Value:
             return {f.name: build(f.type) for f in t.fields}
         if isinstance(t, Vector):
             return np.stack([scalar(t.element) for _ in range(t.size)], axis=-1)
+        assert isinstance(t, Scalar)
         return scalar(t)
 
     return build(type_)

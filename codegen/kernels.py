@@ -13,9 +13,10 @@ from codegen.backends import complete_program, dialect
 from codegen.emit.dialect import Dialect, with_half, with_precise
 from codegen.emit.module import DEFAULT_PREFIX, HALF_PREFIX, emit
 from codegen.emit.stmt import StmtPrinter
+from codegen.errors import UserError
 from codegen.half import half_rules
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F16, F32, I32, Array, Scalar, Struct, Type, leaves
+from codegen.ir.types import BOOL, F16, F32, I32, TEXTURE, Array, Scalar, Struct, Type, Vector, leaves
 from codegen.ir.unit import Unit
 from codegen.library import Library
 from codegen.passes.half import half_versions
@@ -25,6 +26,10 @@ LITERAL_CASES = 8
 """Calls with literal arguments in one program, at most."""
 LITERAL_WORDS = 32
 """Words that all these calls store, at most: what a fragment can write."""
+
+
+TEXTURE_STEM = "harness_"
+"""Before the name of a parameter: the global that holds its map."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +117,10 @@ def _called(library: Library, name: str, options: KernelOptions) -> ir.Function:
 
 def _complete(library: Library, name: str, target: str, options: KernelOptions, lines: list[str]) -> str:
     text = options.prelude + emit(library, _dialect(target, options), [name])
-    return complete_program(target, text, "\n".join(lines), options.version, options.form)
+    maps = [TEXTURE_STEM + p.name for p in library.function(name).parameters if p.type == TEXTURE]
+    if maps and (options.form != "plain" or options.source != "words"):
+        raise UserError(f"{name} reads maps: only kernels of the form plain, with loaded words, pass them")
+    return complete_program(target, text, "\n".join(lines), options.version, options.form, maps)
 
 
 def _single(function: ir.Function, chosen: Dialect) -> list[str]:
@@ -154,7 +162,10 @@ def _loaded_call(function: ir.Function) -> ir.Call:
             return ir.Convert(F16, ir.Call(F32, "load_f32", (ir.Const(I32, slot - 1),)))
         return ir.Call(scalar, f"load_{scalar.name}", (ir.Const(I32, slot - 1),))
 
-    arguments = tuple(_built(p.type, load) for p in function.parameters)
+    arguments = tuple(
+        ir.Var(TEXTURE, TEXTURE_STEM + p.name) if p.type == TEXTURE else _built(p.type, load)
+        for p in function.parameters
+    )
     return ir.Call(function.returns, function.name, arguments)
 
 
@@ -162,6 +173,7 @@ def _built(type_: Type, load: Callable[[Scalar], ir.Expr]) -> ir.Expr:
     """A value of the type from its scalars, in order."""
     if isinstance(type_, Scalar):
         return load(type_)
+    assert isinstance(type_, Struct | Vector)
     parts = [f.type for f in type_.fields] if isinstance(type_, Struct) else [type_.element] * type_.size
     return ir.Construct(type_, tuple(_built(part, load) for part in parts))
 

@@ -74,16 +74,21 @@ class Library:
         return {**{f.name: f for f in sorted(found, key=self._order)}, **self._added}
 
     @functools.cached_property
-    def public(self) -> dict[str, Function]:
+    def documented(self) -> dict[str, Function]:
         """The functions that are not helpers."""
         return {name: f for name, f in self.functions.items() if f.public}
+
+    @functools.cached_property
+    def public(self) -> dict[str, Function]:
+        """Those of them whose arguments are numbers: what tests can draw."""
+        return {name: f for name, f in self.documented.items() if not f.reads_textures}
 
     def function(self, name: str) -> Function:
         """One function; raises UserError with the nearest name if there is none."""
         if name in self._added:
             return self._added[name]
         if name not in self.resolver.function_names():
-            raise unknown("function", name, self.public)
+            raise unknown("function", name, self.documented)
         return self.resolver.function(name)
 
     @functools.cached_property
@@ -122,7 +127,7 @@ class Library:
 
     def select(self, names: Iterable[str] | None = None) -> Selection:
         """These functions (all public ones if None) and what they need, dependencies first."""
-        wanted = list(self.public) if names is None else list(dict.fromkeys(names))
+        wanted = list(self.documented) if names is None else list(dict.fromkeys(names))
         ordered: dict[str, Function] = {}
 
         def visit(name: str) -> None:

@@ -52,9 +52,9 @@ def _last_function(lines: list[str], *, comment: bool) -> list[str]:
 
 def _functions(library: Library) -> str:
     rows = ["| section | functions | variants and printed forms |", "|---|---|---|"]
-    sections = dict.fromkeys(f.module for f in library.public.values())
+    sections = dict.fromkeys(f.module for f in library.documented.values())
     for section in sections:
-        own = [f for f in library.public.values() if f.module == section]
+        own = [f for f in library.documented.values() if f.module == section]
         base = ", ".join(f"`{f.name}`" for f in own if f.kind == "base")
         others = sum(f.kind != "base" for f in own)
         rows.append(f"| {section} | {base} | {others} |")

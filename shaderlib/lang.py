@@ -40,6 +40,16 @@ class Finite:
     """Any finite value."""
 
 
+class Edges:
+    """How a map goes on beyond its edges along u and v: "repeat" or "clamp"."""
+
+    def __init__(self, u: str, v: str) -> None: ...
+
+
+class Texture:
+    """A map of RGBA floats with its levels and its sampler."""
+
+
 def helper(function: _F) -> _F:
     """Mark a function as not public: emitted only where something needs it."""
     raise NotImplementedError
@@ -669,6 +679,16 @@ def log2(x: vec4) -> vec4: ...
 def log2(x: f32) -> f32: ...
 def log2(x: Any) -> Any:
     """Base-2 logarithm of x > 0, componentwise."""
+    raise NotImplementedError
+
+
+def lookup(t: Texture, uv: vec2) -> vec4:
+    """Bilinear lookup in the largest level."""
+    raise NotImplementedError
+
+
+def lookup_level(t: Texture, uv: vec2, lod: f32) -> vec4:
+    """Lookup in two levels, bilinear in each and linear between them; the last level stays."""
     raise NotImplementedError
 
 

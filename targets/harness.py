@@ -1,8 +1,11 @@
 """Complete programs: a library and an entry point's body, put into a target's harness."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from string import Template
 from typing import Literal
+
+from targets.textures import declarations
 
 Form = Literal["plain", "pair", "uniform", "fragment"]
 """How a program walks over its lanes: one per invocation; two per invocation, each taken by
@@ -31,7 +34,12 @@ def harness_text(target: str, form: Form = "plain") -> str:
 
 
 def complete_program(
-    target: str, library: str, body: str, version: str = GLSL_VERSION, form: Form = "plain"
+    target: str,
+    library: str,
+    body: str,
+    version: str = GLSL_VERSION,
+    form: Form = "plain",
+    textures: Sequence[str] = (),
 ) -> str:
     """Complete program text for a target's runtime.
 
@@ -39,6 +47,11 @@ def complete_program(
     body     statements that load words, call the library and store words, by load_T(k) and store_T(k, value)
              with T one of f32, i32, u32, bool and k the number of the word; in a pair after harness_take(j)
     version  GLSL only: what follows #version, for example 430, 450 or 310 es, with #extension lines below it
+    textures names of maps that the body passes on; in the form "plain" only
     """
+    if textures and form != "plain":
+        raise ValueError(f"no harness of the form {form} has maps")
     text = Template(harness_text(target, form))
-    return text.substitute(library=library, body=body, version=version)
+    return text.substitute(
+        library=library, body=body, version=version, textures=declarations(target, textures)
+    )

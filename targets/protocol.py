@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:  # the generator imports this package for its dialects and must not pay for numpy
+    from collections.abc import Sequence
+
+    from targets.textures import TextureData
     from targets.words import Words
 
 
@@ -51,12 +54,13 @@ class Runtime(Protocol):
         """Whether the device computes in half precision; mediump of desktop GLSL is full precision."""
         ...
 
-    def run(self, program: str, words: Words, slots_out: int) -> Words:
+    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()) -> Words:
         """Run a program once per lane.
 
         program    complete program text, see targets.harness.complete_program
         words      input words, (slots_in, n)
         slots_out  number of 32-bit words that each lane writes
+        textures   maps in the order in which the program declares them
         returns    output words, (slots_out, n); a word that the program left alone reads 0xdeaddead
         errors     BuildFailed with the compiler's log; a text that was built before is not built again
         """
@@ -80,7 +84,9 @@ class Prepared(Protocol):
 class TimedRuntime(Runtime, Protocol):
     """A runtime that separates building and transfers from execution."""
 
-    def prepare(self, program: str, words: Words, slots_out: int) -> Prepared:
+    def prepare(
+        self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()
+    ) -> Prepared:
         """Build a program (unless built before) and put its input on the device.
 
         The lanes have to fit one chunk: see chunk_lanes of targets.lanes. Arguments and errors are those

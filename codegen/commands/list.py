@@ -18,7 +18,7 @@ def command(as_json: bool) -> None:
     """List the public functions: signature, section, variants, domain, declared error."""
     library = load_library()
     if as_json:
-        functions = [as_data(library, f) for f in library.public.values()]
+        functions = [as_data(library, f) for f in library.documented.values()]
         structs = [
             {
                 "name": s.name,
@@ -31,10 +31,10 @@ def command(as_json: bool) -> None:
         click.echo(json.dumps({"version": VERSION, "functions": functions, "structs": structs}, indent=2))
         return
     section = None
-    for f in library.public.values():
+    for f in library.documented.values():
         if f.module != section:
             section = f.module
-            click.echo(f"\n{section}" if f is not next(iter(library.public.values())) else section)
+            click.echo(f"\n{section}" if f is not next(iter(library.documented.values())) else section)
         note = {"variant": f"   variant of {f.base}", "printed": f"   printed form of {f.base}"}.get(
             f.kind, ""
         )

@@ -34,6 +34,9 @@ class Dialect:
     half_precision  precision qualifier put before f16 and its vectors ("" for none)
     half_suffix  of f16 literals
     half_enable  line that a text with f16 starts with ("" for none)
+    texture      a texture parameter as the parameters that stand for it: (what follows its name, type)
+    lookup_library  definition of the function that lookups call, with $prefix before its names ("": built in)
+    lookup       name of that function, once the prefix is known
     line_map     how a source line is stated, with {line} and {file} ("" where the target has no directive)
     """
 
@@ -57,6 +60,9 @@ class Dialect:
     half_precision: str = ""
     half_suffix: str = ""
     half_enable: str = ""
+    texture: tuple[tuple[str, str], ...] = ()
+    lookup_library: str = ""
+    lookup: str = ""
     line_map: str = field(default="")
 
 

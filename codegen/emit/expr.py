@@ -6,7 +6,7 @@ from codegen.emit.dialect import Dialect
 from codegen.emit.literal import literal
 from codegen.emit.precedence import CONDITION, LEFT, RIGHT, level
 from codegen.ir import nodes as ir
-from codegen.ir.types import Array, Struct, Type, Vector
+from codegen.ir.types import F32, TEXTURE, Array, Struct, Type, Vector
 from codegen.ops import BUILTINS
 
 _SPELLING = {"//": "/", "and": "&&", "or": "||", "not": "!", "negate": "-"}
@@ -33,7 +33,7 @@ class ExprPrinter:
             case ir.Binary():
                 return self.binary(e)
             case ir.Builtin():
-                return f"{BUILTINS[e.op].spelling(self.dialect.target)}({self.arguments(e.args)})"
+                return self.builtin(e)
             case ir.Call():
                 return f"{e.function}({self.arguments(e.args)})"
             case ir.Construct():
@@ -48,6 +48,17 @@ class ExprPrinter:
                 return f"{self.bare(e.value, _PRIMARY)}.{e.components}"
             case ir.Select():
                 return self.conditional(e)
+
+    def builtin(self, e: ir.Builtin) -> str:
+        op = BUILTINS[e.op]
+        trailing = tuple(ir.Const(F32, x) for x in op.trailing)
+        looks_up = bool(self.dialect.lookup) and any(a.type == TEXTURE for a in e.args)
+        name = self.dialect.lookup if looks_up else op.spelling(self.dialect.target)
+        return f"{name}({self.arguments((*e.args, *trailing))})"
+
+    def texture(self, name: str) -> list[tuple[str, str]]:
+        """What stands for a texture of this name: names with their types."""
+        return [(name + suffix, type_) for suffix, type_ in self.dialect.texture]
 
     def bare(self, e: ir.Expr, allowed: frozenset[str]) -> str:
         """An operand, in parentheses unless its level is allowed to stand bare."""
@@ -66,7 +77,12 @@ class ExprPrinter:
         return level(e)
 
     def arguments(self, args: tuple[ir.Expr, ...]) -> str:
-        texts = [self.show(a) for a in args]
+        texts = [
+            ", ".join(part for part, _ in self.texture(a.name))
+            if isinstance(a, ir.Var) and a.type == TEXTURE
+            else self.show(a)
+            for a in args
+        ]
         for k, a in enumerate(args):
             # WGSL would read f(a < b, c > (d)) as a call of the template a<b, c>.
             opens = "<" in texts[k] and self.level(a) in _TESTS

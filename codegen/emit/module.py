@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
+from dataclasses import replace
+from string import Template
 
 from codegen.bounds import Bound
 from codegen.emit import comment, wrap
@@ -12,6 +14,7 @@ from codegen.emit.stmt import StmtPrinter
 from codegen.guarantees import guarantees, phrase, table_of
 from codegen.half import check_half, half_forms, half_hash, half_rules
 from codegen.ir.nodes import StructDef
+from codegen.ir.types import TEXTURE
 from codegen.ir.unit import Unit
 from codegen.library import VERSION, Library, Selection
 from codegen.names import check_emitted, check_prefix
@@ -66,13 +69,17 @@ def emit(
 
 def emit_selection(library: Library, dialect: Dialect, selection: Selection, prefix: str) -> list[str]:
     """The definitions alone, with their comments."""
-    printer = StmtPrinter(dialect)
+    looks_up = any(p.type == TEXTURE for f in selection.functions for p in f.parameters)
+    library_text = dialect.lookup_library if looks_up else ""
+    printer = StmtPrinter(replace(dialect, lookup=f"{prefix}lookup_level") if library_text else dialect)
     public_names = library.resolver.names
     rename = comment.renamer(public_names, prefix)
     versions = _versions(library, dialect, selection)
     unit = Unit(tuple(v.function for v in versions), _structs(dialect, selection))
     unit = run_passes(unit, prefix, named_results=bool(dialect.local))
     blocks: list[list[str]] = []
+    if library_text:
+        blocks.append(Template(library_text).substitute(prefix=prefix).rstrip().split("\n"))
     for original, renamed in zip(selection.structs, unit.structs, strict=True):
         blocks.append([*comment.struct_comment(original, rename), *printer.struct(renamed.type)])
     for version, f in zip(versions, unit.functions, strict=True):

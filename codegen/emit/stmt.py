@@ -6,7 +6,7 @@ from codegen.emit import wrap
 from codegen.emit.dialect import Dialect
 from codegen.emit.expr import ExprPrinter
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F16, F32, Array, Struct, Type, element_of, leaves
+from codegen.ir.types import BOOL, F16, F32, TEXTURE, Array, Struct, Type, element_of, leaves
 
 _STEP = "    "
 
@@ -36,6 +36,14 @@ class StmtPrinter:
             constant = "const " if self.dialect.structs == "compound" else ""
             return f"{constant}{self.type_name(type_.element)} {name}[{type_.size}]"
         return f"{self.type_name(type_)} {name}"
+
+    def parameter(self, p: ir.Parameter) -> list[str]:
+        """A parameter of a function; a texture may be several."""
+        if p.type != TEXTURE:
+            return [self.declare(p.name, p.type)]
+        if self.dialect.declaration == "name: type":
+            return [f"{name}: {type_}" for name, type_ in self.expr.texture(p.name)]
+        return [f"{type_} {name}" for name, type_ in self.expr.texture(p.name)]
 
     def let(self, s: ir.Let) -> str:
         value = self.expr.show(s.value)
@@ -94,7 +102,7 @@ class StmtPrinter:
 
     def function(self, f: ir.Function) -> list[str]:
         """A whole definition."""
-        parameters = ", ".join(self.declare(p.name, p.type) for p in f.parameters)
+        parameters = ", ".join(part for p in f.parameters for part in self.parameter(p))
         if self.dialect.declaration == "name: type":
             head = f"fn {f.name}({parameters}) -> {self.type_name(f.returns)} {{"
         else:

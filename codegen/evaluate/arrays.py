@@ -6,13 +6,14 @@ import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from codegen.errors import UserError, nearest, unknown
-from codegen.ir.types import BOOL, F16, F32, I32, U32, Scalar, Struct, Type, Vector
+from codegen.evaluate.textures import as_map, lookup_in, texture_map
+from codegen.ir.types import BOOL, F16, F32, I32, TEXTURE, U32, Scalar, Struct, Type, Vector
 from codegen.ir.types import Array as ArrayType
 
 Array = npt.NDArray[Any]
@@ -58,7 +59,12 @@ def _numpy_namespace(floats: type[np.generic]) -> SimpleNamespace:
     names = "abs minimum maximum divide floor sqrt exp exp2 log log2 sin cos arctan2 stack"
     logic = "logical_and logical_or logical_not"
     functions = {name: getattr(np, name) for name in f"{names} {logic}".split()}
-    return SimpleNamespace(**functions, float_to_bits=_float_to_bits, bits_to_float=to_float)
+    return SimpleNamespace(
+        **functions,
+        float_to_bits=_float_to_bits,
+        bits_to_float=to_float,
+        lookup_level=lookup_in(floats, np.floor),
+    )
 
 
 ARITHMETICS = ("float32", "float64", "mpmath")
@@ -106,6 +112,8 @@ def convert_inputs(
 def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Value:
     if isinstance(type_, ArrayType) and not isinstance(given, Mapping):
         given = _elements(where, type_, given)
+    if type_ == TEXTURE:
+        return cast(Value, texture_map(where, given))
     if isinstance(type_, Struct):
         if not isinstance(given, Mapping):
             raise UserError(f"{where} is a {type_.name}: give its fields")
@@ -118,6 +126,7 @@ def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Val
             raise UserError(f"{where} lacks {', '.join(missing)}")
         return {n: _convert(f"{where}.{n}", t, given[n], arithmetic) for n, t in fields.items()}
     element = type_.element if isinstance(type_, Vector) else type_
+    assert isinstance(element, Scalar)
     a = _numbers(where, element, given)
     if arithmetic.floats is np.object_ and element in (F16, F32):
         a = np.frompyfunc(arithmetic.literal, 1, 1)(a.astype(np.float64) if a.dtype != object else a)
@@ -162,6 +171,8 @@ def _numbers(where: str, element: Scalar, given: Any) -> Array:
 
 
 def _leaf_arrays(value: Value) -> list[Array]:
+    if as_map(value) is not None:
+        return []
     if isinstance(value, dict):
         return [a for v in value.values() for a in _leaf_arrays(v)]
     return [value]
@@ -169,6 +180,8 @@ def _leaf_arrays(value: Value) -> list[Array]:
 
 def broadcast(value: Value, count: int) -> Value:
     """The value with `count` lanes, repeated from one lane where needed."""
+    if as_map(value) is not None:
+        return value
     if isinstance(value, dict):
         return {n: broadcast(v, count) for n, v in value.items()}
     return np.broadcast_to(value, (count, *value.shape[1:]))
@@ -179,6 +192,7 @@ def choose(condition: Array, if_true: Value, if_false: Value) -> Value:
     if isinstance(if_true, dict):
         assert isinstance(if_false, dict)
         return {n: choose(condition, v, if_false[n]) for n, v in if_true.items()}
-    assert not isinstance(if_false, dict)
+    assert isinstance(if_true, np.ndarray)
+    assert isinstance(if_false, np.ndarray)
     wide = condition[:, None] if if_true.ndim == 2 else condition
     return np.where(wide, if_true, if_false)

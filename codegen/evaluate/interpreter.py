@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from codegen.evaluate.arrays import Arithmetic, Array, Value, choose, convert_inputs
 from codegen.evaluate.arrays import arithmetic as find_arithmetic
+from codegen.evaluate.textures import as_map
 from codegen.half import half_rules
 from codegen.ir import nodes as ir
 from codegen.ir.types import F16, F32, I32, U32, Scalar, Struct, Type, Vector, element_of
@@ -47,8 +48,20 @@ def evaluate(
         find = {v.function.name: v.function for v in versions}.__getitem__
     function = find(name)
     arrays, count = convert_inputs({p.name: p.type for p in function.parameters}, inputs, chosen, name)
+    arrays = with_edges(function, arrays)
     with np.errstate(all="ignore"):  # lanes that a branch does not take may overflow or divide by zero
         return _Frame(find, chosen, function, arrays, count).run()
+
+
+def with_edges(function: ir.Function, arrays: dict[str, Value]) -> dict[str, Value]:
+    """The inputs with maps that go on beyond their edges as the parameters' domains say."""
+    domains = {p.name: p.domain for p in function.parameters}
+    found = dict(arrays)
+    for name, value in arrays.items():
+        texture = as_map(value)
+        if texture is not None:
+            found[name] = cast(Value, texture.with_edges(domains[name]))
+    return found
 
 
 class _Frame:
@@ -100,7 +113,7 @@ class _Frame:
 
     def array(self, e: ir.Expr) -> Array:
         value = self.expr(e)
-        assert not isinstance(value, dict)
+        assert isinstance(value, np.ndarray)
         return value
 
     def expr(self, e: ir.Expr) -> Value:
@@ -118,7 +131,7 @@ class _Frame:
                     a, b = (a[:, None], b) if a.ndim < b.ndim else (a, b[:, None])
                 return self.fit(e.type, OPERATORS[e.op].meaning(m, a, b))
             case ir.Builtin():
-                args = [self.array(a) for a in e.args]
+                args = [self.expr(a) for a in e.args]
                 return self.fit(e.type, BUILTINS[e.op].meaning(m, *args))
             case ir.Call():
                 return self.call(e)
@@ -179,7 +192,7 @@ class _Frame:
         assert isinstance(type_, Vector)
         columns: list[Array] = []
         for part in parts:
-            assert not isinstance(part, dict)
+            assert isinstance(part, np.ndarray)
             columns += [part] if part.ndim == 1 else [part[:, k] for k in range(part.shape[1])]
         if len(columns) == 1:
             columns *= type_.size

@@ -10,6 +10,8 @@ import mpmath
 import numpy as np
 import numpy.typing as npt
 
+from codegen.evaluate.textures import lookup_in
+
 Array = npt.NDArray[Any]
 
 
@@ -47,6 +49,7 @@ def namespace() -> SimpleNamespace:
         cos=each(mpmath.cos),
         arctan2=each(mpmath.atan2, 2),
         stack=np.stack,
+        lookup_level=lookup_in(np.object_, each(mpmath.floor), mpmath.mpf),
         logical_and=np.logical_and,
         logical_or=np.logical_or,
         logical_not=np.logical_not,

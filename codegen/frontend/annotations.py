@@ -9,8 +9,10 @@ from codegen.errors import nearest
 from codegen.frontend import constants
 from codegen.frontend.scope import Names
 from codegen.frontend.source import LANG, SourceFile
-from codegen.ir.domains import MARKERS, SCALES, Domain, Interval, Length, Unit
-from codegen.ir.types import F32, VALUE_TYPES, Type, Vector
+from codegen.ir.domains import EDGES, MARKERS, SCALES, Domain, Edges, Interval, Length, Unit
+from codegen.ir.types import F32, TEXTURE, VALUE_TYPES, Type, Vector
+
+_NAMED: dict[str, Type] = {**VALUE_TYPES, TEXTURE.name: TEXTURE}
 
 
 def read(
@@ -36,18 +38,24 @@ def read(
 
 def _named(resolver: Names, file: SourceFile, node: ast.expr, name: str) -> tuple[Type, Domain | None]:
     where, original = resolver.find(file, name) or (None, name)
-    if where is None and original in VALUE_TYPES and file.imports.get(name, (LANG, name))[0] == LANG:
-        return VALUE_TYPES[original], None
+    if where is None and original in _NAMED and file.imports.get(name, (LANG, name))[0] == LANG:
+        return _NAMED[original], None
     if where is not None and original in where.structs:
         return resolver.struct(where, original).type, None
     if where is not None and original in where.values:
         with resolver.defining(where, original, where.values[original]):
             return read(resolver, where, where.values[original], node)
-    names = [*VALUE_TYPES, *file.imports, *file.structs]
+    names = [*_NAMED, *file.imports, *file.structs]
     raise file.error(node, f'unknown type "{name}"{nearest(name, names)}')
 
 
 def _check_domain(file: SourceFile, node: ast.expr, type_: Type, domain: Domain) -> None:
+    if isinstance(domain, Edges) != (type_ == TEXTURE):
+        raise file.error(node, f"Edges is the domain of Texture, and of nothing else; this is {type_.name}")
+    if isinstance(domain, Edges):
+        for edge in (domain.u, domain.v):
+            if edge not in EDGES:
+                raise file.error(node, f'unknown edge "{edge}"{nearest(str(edge), EDGES)}')
     if isinstance(domain, Unit | Length) and not (isinstance(type_, Vector) and type_.element == F32):
         raise file.error(node, f"{type(domain).__name__} is a domain of vectors, not of {type_.name}")
     if isinstance(domain, Interval | Length) and not -math.inf < domain.low <= domain.high < math.inf:

@@ -12,7 +12,19 @@ from codegen.frontend.scope import Names
 from codegen.frontend.settle import NoValueError, settle
 from codegen.frontend.source import LANG, SourceFile, describe
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, I32, U32, VALUE_TYPES, Scalar, Struct, Type, Vector, vector_of
+from codegen.ir.types import (
+    BOOL,
+    F32,
+    I32,
+    U32,
+    VALUE_TYPES,
+    Scalar,
+    Struct,
+    Texture,
+    Type,
+    Vector,
+    vector_of,
+)
 from codegen.ops import BUILTINS, OPERATORS
 
 _SYMBOLS: dict[type[ast.AST], str] = {
@@ -108,6 +120,8 @@ class ExpressionLowering:
                 a, b = self._pair(body, orelse, expected)
                 if a.type != b.type:
                     self.fail(node, f"the two sides differ: {a.type.name} and {b.type.name}")
+                if isinstance(a.type, Texture):
+                    self.fail(node, "a texture is a parameter; no expression chooses one")
                 if isinstance(a.type, Struct):
                     self.fail(node, "a conditional expression chooses numbers and vectors; write if and else")
                 return ir.Select(a.type, self.lower(test, BOOL), a, b)

@@ -16,11 +16,11 @@ from codegen.frontend.source import LANG, ROOT_PACKAGE, SourceFile, parse_file, 
 from codegen.frontend.statements import lower_body
 from codegen.ir.domains import MARKERS, Domain
 from codegen.ir.nodes import Doc, Function, Parameter, StructDef, callees
-from codegen.ir.types import VALUE_TYPES, Field, Struct, Type
+from codegen.ir.types import TEXTURE, VALUE_TYPES, Field, Struct, Type
 from codegen.ops import BUILTINS
 
 LANG_NAMES = frozenset(
-    {*BUILTINS, *VALUE_TYPES, *MARKERS, "variant", "printed", "helper", "struct"} - {"bool"}
+    {*BUILTINS, *VALUE_TYPES, *MARKERS, TEXTURE.name, "variant", "printed", "helper", "struct"} - {"bool"}
 )
 _DEFINITION = re.compile(r"^(def|class) (\w+)", re.MULTILINE)
 
@@ -190,6 +190,8 @@ class Resolver:
                             raise file.error(item, f'field "{field}" is given twice')
                         with self.defining(file, name, item):
                             type_, domain = stated.read(self, file, annotation, item)
+                        if type_ == TEXTURE:
+                            raise file.error(item, "a texture is a parameter; no struct holds one")
                         fields.append(
                             Field(field, type_, self._needs_domain(file, item, field, type_, domain))
                         )
@@ -244,7 +246,10 @@ class Resolver:
             type_, domain = stated.read(self, file, argument.annotation, argument)
             domain = self._needs_domain(file, argument, argument.arg, type_, domain)
             parameters.append(Parameter(argument.arg, type_, domain))
-        return tuple(parameters), stated.read(self, file, node.returns, node)[0]
+        returns = stated.read(self, file, node.returns, node)[0]
+        if returns == TEXTURE:
+            raise file.error(node, "a texture is a parameter; no function returns one")
+        return tuple(parameters), returns
 
     def kind(self, file: SourceFile, node: ast.FunctionDef) -> tuple[str, str | None]:
         """What the decorators say: the function's kind and, for variants and printed forms, its base."""

@@ -13,7 +13,7 @@ from codegen.frontend.expressions import ExpressionLowering
 from codegen.frontend.scope import Names
 from codegen.frontend.source import SourceFile, describe
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, I32, Type
+from codegen.ir.types import BOOL, I32, TEXTURE, Type
 
 MAX_ITERATIONS = 65536
 """Longest loop the front end accepts; shaders hang a machine long before this is useful."""
@@ -101,6 +101,8 @@ class StatementLowering:
         if name in self.loop_names:
             raise self.file.error(node, f'loop variable "{name}" is read only')
         e = self.expression(value, known)
+        if e.type == TEXTURE:
+            raise self.file.error(node, "a texture is a parameter; pass it on by its own name")
         if known is not None:
             return ir.Assign(name, e, node.lineno)
         if isinstance(node, ast.AugAssign):

@@ -57,11 +57,22 @@ class Scaled:
 
 
 @dataclass(frozen=True)
+class Filter:
+    """Linear filtering whose weights are within `texel` within a level and `level` between levels.
+
+    1: nothing is stated, and any mean of the texels about the place counts.
+    """
+
+    texel: float
+    level: float
+
+
+@dataclass(frozen=True)
 class Unstated:
     """The specification promises nothing."""
 
 
-Accuracy = Exact | Rounded | Ulp | Absolute | Inherited | Scaled | Unstated
+Accuracy = Exact | Rounded | Ulp | Absolute | Inherited | Scaled | Filter | Unstated
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,10 @@ from typing import TypeVar, cast
 
 import numpy as np
 
+from codegen.evaluate.textures import as_map
 from codegen.intervals import logic
 from codegen.intervals.context import Context
+from codegen.intervals.lookups import lookup
 from codegen.intervals.operations import VECTOR_BUILTINS, binary, scalar_builtin, unary
 from codegen.intervals.values import (
     Range,
@@ -160,6 +162,11 @@ class Frame:
         return cast(V, found)
 
     def builtin(self, op: str, args: tuple[Value, ...]) -> Value:
+        texture = as_map(args[0])
+        if texture is not None:
+            uv = cast(tuple[Range, ...], args[1])
+            lod = cast(Range, args[2]) if len(args) > 2 else None
+            return lookup(self.context, texture, uv[0], uv[1], lod)
         if op in VECTOR_BUILTINS:
             vectors = [cast(tuple[Range, ...], a) for a in args]
             flat = tuple(c for v in vectors for c in v)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from codegen.evaluate.arrays import Array, arithmetic, convert_inputs
 from codegen.evaluate.arrays import Value as Arrays
+from codegen.evaluate.interpreter import with_edges
+from codegen.evaluate.textures import as_map
 from codegen.intervals.arithmetic import from_input
 from codegen.intervals.causes import Cause, CauseBook
 from codegen.intervals.context import Context, Ways
@@ -94,7 +96,8 @@ class _Run:
         self.library = library
         self.function = library.function(name)
         types = {p.name: p.type for p in self.function.parameters}
-        self.inputs, self.count = convert_inputs(types, inputs, arithmetic("float32"), name)
+        arrays, self.count = convert_inputs(types, inputs, arithmetic("float32"), name)
+        self.inputs = with_edges(self.function, arrays)
         self.table = table
         self.book = CauseBook()
         kinds = [scalar for _, scalar in leaves(self.function.returns)]
@@ -213,7 +216,10 @@ def _value(context: Context, type_: Type, given: Arrays, lanes: Array) -> Value:
     if isinstance(type_, Struct):
         assert isinstance(given, dict)
         return {f.name: _value(context, f.type, given[f.name], lanes) for f in type_.fields}
-    assert not isinstance(given, dict)
+    if as_map(given) is not None:
+        return cast(Value, given)
+    assert isinstance(given, np.ndarray)
+    assert isinstance(type_, Scalar | Vector)
     if isinstance(type_, Vector):
         return tuple(_single(context, type_.element, given[:, k][lanes]) for k in range(type_.size))
     return _single(context, type_, given[lanes])

@@ -14,6 +14,7 @@ from codegen.intervals.accuracy import (
     Absolute,
     Accuracy,
     Exact,
+    Filter,
     Inherited,
     Rounded,
     Row,
@@ -143,6 +144,11 @@ _KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...], _Maker]] = {
         ("epsilons", "per_component"),
         ("epsilons",),
         lambda where, e: Scaled(float(e["epsilons"]), float(e.get("per_component", 0.0))),
+    ),
+    "filter": (
+        ("texel", "level"),
+        ("texel", "level"),
+        lambda where, e: Filter(_positive(where, "texel", e["texel"]), _positive(where, "level", e["level"])),
     ),
     "unstated": ((), (), lambda where, e: Unstated()),
 }

@@ -51,12 +51,25 @@ class Finite:
         return "finite"
 
 
-Domain = Interval | Unit | Length | Finite
-MARKERS: dict[str, type[Interval] | type[Unit] | type[Length] | type[Finite]] = {
+@dataclass(frozen=True)
+class Edges:
+    """How a map goes on beyond its edges along u and v: "repeat" or "clamp". The host's sampler does that."""
+
+    u: str
+    v: str
+
+    def describe(self) -> str:
+        return f"linear filter within and between levels; {self.u} in u, {self.v} in v"
+
+
+EDGES = ("repeat", "clamp")
+Domain = Interval | Unit | Length | Finite | Edges
+MARKERS: dict[str, type[Interval] | type[Unit] | type[Length] | type[Finite] | type[Edges]] = {
     "Interval": Interval,
     "Unit": Unit,
     "Length": Length,
     "Finite": Finite,
+    "Edges": Edges,
 }
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 from codegen.errors import Place
 from codegen.ir.domains import Domain
-from codegen.ir.types import Struct, Type
+from codegen.ir.types import TEXTURE, Struct, Type
 
 
 @dataclass(frozen=True)
@@ -223,6 +223,11 @@ class Function:
     @property
     def public(self) -> bool:
         return self.kind != "helper"
+
+    @property
+    def reads_textures(self) -> bool:
+        """Whether a parameter is a texture."""
+        return any(p.type == TEXTURE for p in self.parameters)
 
 
 def children(e: Expr) -> tuple[Expr, ...]:

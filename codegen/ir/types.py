@@ -1,4 +1,4 @@
-"""Types of the IR: scalars, vectors, structs and arrays."""
+"""Types of the IR: scalars, vectors, structs, arrays and textures."""
 
 from __future__ import annotations
 
@@ -60,7 +60,14 @@ class Array(Struct):
         return len(self.fields)
 
 
-Type = Scalar | Vector | Struct
+@dataclass(frozen=True)
+class Texture:
+    """A handle of a map with its sampler: only a parameter has it, and only lookups and calls take it."""
+
+    name: str
+
+
+Type = Scalar | Vector | Struct | Texture
 
 
 def array_of(element: Scalar | Vector, size: int, domain: Domain | None = None) -> Array:
@@ -72,6 +79,7 @@ def array_of(element: Scalar | Vector, size: int, domain: Domain | None = None) 
 F32, I32, U32, BOOL = Scalar("f32"), Scalar("i32"), Scalar("u32"), Scalar("bool")
 VEC2, VEC3, VEC4 = (Vector(f"vec{n}", F32, n) for n in (2, 3, 4))
 UVEC2, UVEC3 = Vector("uvec2", U32, 2), Vector("uvec3", U32, 3)
+TEXTURE = Texture("Texture")
 F16 = Scalar("f16")
 HVEC2, HVEC3, HVEC4 = (Vector(f"hvec{n}", F16, n) for n in (2, 3, 4))
 
@@ -83,20 +91,14 @@ VALUE_TYPES: dict[str, Scalar | Vector] = {
 HALF_TYPES: dict[str, Scalar | Vector] = {t.name: t for t in (F16, HVEC2, HVEC3, HVEC4)}
 """Types that no source names: the pass codegen.passes.half makes them of f32 and its vectors."""
 
-_HALVES: dict[Type, Type] = {F32: F16, VEC2: HVEC2, VEC3: HVEC3, VEC4: HVEC4}
+_HALVES: dict[Type, Scalar | Vector] = {F32: F16, VEC2: HVEC2, VEC3: HVEC3, VEC4: HVEC4}
 _SINGLES: dict[Type, Type] = {half: single for single, half in _HALVES.items()}
 
 
 def half_of(type_: Type) -> Type:
     """The type with f16 in place of f32, fields included."""
     if isinstance(type_, Array):
-        element = half_of(type_.element)
-        assert not isinstance(element, Struct)
-        return array_of(element, type_.size)
-    if isinstance(type_, Array):
-        element = half_of(type_.element)
-        assert isinstance(element, Scalar | Vector)
-        return array_of(element, type_.size)
+        return array_of(_HALVES.get(type_.element, type_.element), type_.size)
     if isinstance(type_, Struct):
         return Struct(type_.name, tuple(replace(f, type=half_of(f.type)) for f in type_.fields))
     return _HALVES.get(type_, type_)
@@ -125,6 +127,8 @@ def leaves(type_: Type, path: str = "") -> list[tuple[str, Scalar]]:
     """The scalars a value consists of, in order, with their access paths (".tangent.x", "[2].x")."""
     if isinstance(type_, Scalar):
         return [(path, type_)]
+    if isinstance(type_, Texture):
+        return []
     if isinstance(type_, Vector):
         return [(f"{path}.{c}", type_.element) for c in "xyzw"[: type_.size]]
     if isinstance(type_, Array):

@@ -5,7 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F16, F32, I32, U32, Array, Struct, Type, Vector, element_of, vector_of
+from codegen.ir.types import (
+    BOOL,
+    F16,
+    F32,
+    I32,
+    TEXTURE,
+    U32,
+    Array,
+    Struct,
+    Type,
+    Vector,
+    element_of,
+    vector_of,
+)
 from codegen.ops import BUILTINS, OPERATORS
 
 
@@ -61,6 +74,8 @@ class _Checker:
                     if s.name in scope:
                         raise self.fail(f'"{s.name}" is defined twice')
                     self.expr(s.value, scope)
+                    if s.value.type == TEXTURE:
+                        raise self.fail(f'"{s.name}" is a local texture')
                     scope[s.name] = s.value.type
                     if s.mutable:
                         mutable.add(s.name)
@@ -111,7 +126,12 @@ class _Checker:
             case ir.Convert():
                 return e.type if self._converts(types[0], e.type) else None
             case ir.Select():
-                same = types[0] == BOOL and types[1] == types[2] and not isinstance(types[1], Struct)
+                same = (
+                    types[0] == BOOL
+                    and types[1] == types[2]
+                    and not isinstance(types[1], Struct)
+                    and types[1] != TEXTURE
+                )
                 return types[1] if same else None
             case ir.Member():
                 found_field = types[0].field(e.name) if isinstance(types[0], Struct) else None

@@ -12,7 +12,7 @@ from codegen.ops.rules import Rule
 Meaning = Callable[..., Any]
 """(m, *operands) -> value; m is a namespace of numpy's names: numpy itself, or codegen.evaluate.precise."""
 
-COSTS = ("free", "add", "multiply", "divide", "root", "exponential", "trigonometric")
+COSTS = ("free", "add", "multiply", "divide", "root", "exponential", "trigonometric", "texture")
 """Cost classes: a coarse order for reading reports. Speed is measured, never summed from these."""
 
 
@@ -28,6 +28,7 @@ class Op:
     summary   one line for editors (built-ins)
     names     parameter names for editors (built-ins)
     spell     spelling per target where it differs from `name`
+    trailing  numbers that the text adds to the arguments
     half      whether the overloads of f32 hold for f16 as well
     work      scalar operations by cost class for vectors of n components, where that is not n times `cost`
     """
@@ -43,6 +44,7 @@ class Op:
     spell: Mapping[str, str] = field(default_factory=dict)
     work: Callable[[int], Mapping[str, int]] | None = None
     half: bool = True
+    trailing: tuple[float, ...] = ()
 
     def operations(self, size: int) -> Mapping[str, int]:
         """Scalar operations by cost class for operands of `size` components."""

@@ -50,6 +50,16 @@ class Finite:
     """Any finite value."""
 
 
+class Edges:
+    """How a map goes on beyond its edges along u and v: "repeat" or "clamp"."""
+
+    def __init__(self, u: str, v: str) -> None: ...
+
+
+class Texture:
+    """A map of RGBA floats with its levels and its sampler."""
+
+
 def helper(function: _F) -> _F:
     """Mark a function as not public: emitted only where something needs it."""
     raise NotImplementedError

@@ -18,7 +18,7 @@ from codegen.errors import UserError
 from codegen.intervals.numbers import LARGEST, SMALLEST
 from codegen.intervals.values import Range, Single, Truth, Whole, constant
 from codegen.ir import nodes as ir
-from codegen.ir.domains import Domain, Finite, Interval, Length, Unit
+from codegen.ir.domains import Domain, Edges, Finite, Interval, Length, Unit
 from codegen.ir.types import BOOL, F32, I32, Array, Scalar, Type, Vector
 from codegen.passes.norms import UNIT_SLACK, Lengths
 from codegen.passes.transfer import Bound, Transfer, remembered, transfers
@@ -249,6 +249,7 @@ def _is_float(type_: Type) -> bool:
 
 def ends(domain: Domain) -> tuple[float, float]:
     """The least and largest component that a domain of floats allows."""
+    assert not isinstance(domain, Edges)
     match domain:
         case Interval():
             low, high = domain.low, domain.high

@@ -16,7 +16,7 @@ import numpy as np
 from codegen.errors import UserError, unknown
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Finite, Interval, Length, Unit, number
-from codegen.ir.types import BOOL, F32, Array, Scalar, Struct, Type, Vector
+from codegen.ir.types import BOOL, F32, Array, Scalar, Struct, Texture, Type, Vector
 from codegen.passes import patterns
 from codegen.passes.values import PARAMETER, Value, Values, any_element
 
@@ -154,6 +154,8 @@ class Subject:
                 f.name: self._constant(values, f"{path}.{f.name}", f.type, given[f.name])
                 for f in type_.fields
             }
+        if isinstance(type_, Texture):
+            raise UserError(f"{where} is a map, which no constant can be")
         numbers = _numbers(where, type_, given)
         self._check_domain(where, self.domains[path], numbers)
         return _constant_of(values, type_, numbers)

@@ -4,7 +4,7 @@ weights.
 Directions (N, 3), texture coordinates (N, 2) in [0, 1]^2 unless said otherwise, scalars (N,).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -164,6 +164,31 @@ def between_faces(inputs: Inputs) -> Mask:
     return np.asarray(np.abs(real(inputs["back"]) - 0.5) <= ROUNDING, dtype=np.bool_)
 
 
+def environment_latlong(environment: Sequence[Array], w: Array, lod: Array) -> Array:
+    """Trilinear lookup of a direction in a latitude-longitude map; its levels are arrays (h, w, 4)."""
+    held = np.clip(real(lod), 0.0, len(environment) - 1)
+    below = np.floor(held).astype(int)
+    above = np.minimum(below + 1, len(environment) - 1)
+    uv = latlong_uv(w)
+    found = [_bilinear(real(level)[..., :3], uv) for level in environment]
+    lanes = np.arange(len(held))
+    share = (held - below)[:, None]
+    stacked = np.stack(found)
+    return real((1.0 - share) * stacked[below, lanes] + share * stacked[above, lanes])
+
+
+def _bilinear(texels: Array, uv: Array) -> Array:
+    """Weights 1 - |distance| of the texel centres about a place; the map repeats in u and ends in v."""
+    height, width = texels.shape[:2]
+    x, y = uv[..., 0] * width - 0.5, uv[..., 1] * height - 0.5
+    total = np.zeros((len(uv), texels.shape[2]))
+    for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        column, row = np.floor(x).astype(int) + i, np.floor(y).astype(int) + j
+        weight = (1.0 - np.abs(x - column)) * (1.0 - np.abs(y - row))
+        total += weight[:, None] * texels[np.clip(row, 0, height - 1), column % width]
+    return total
+
+
 AMBIGUOUS: dict[str, Callable[[Inputs], Mask]] = {
     "dual_paraboloid_uv": flushed_component,
     "octahedral_encode": flushed_component,
@@ -179,5 +204,6 @@ REFERENCES: dict[str, Reference] = {
         parabolic_uv, parabolic_direction, dual_paraboloid_uv, dual_paraboloid_direction,
         dual_paraboloid_solid_angle, octahedral_encode, octahedral_decode, octahedral_solid_angle, latlong_uv,
         latlong_direction, latlong_solid_angle, cube_solid_angle, lod_from_pdf, mis_balance, mis_power,
+        environment_latlong,
     )
 }  # fmt: skip

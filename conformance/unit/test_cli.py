@@ -111,7 +111,7 @@ def test_version(capsys: Capture) -> None:
 
 def test_list_names_every_public_function_with_its_signature(capsys: Capture) -> None:
     out = answer(capsys, "list")
-    public = load_library().public
+    public = load_library().documented
     listed = [line.strip().split("(")[0] for line in out.splitlines() if " -> " in line]
     assert listed == list(public)
     assert "  sin_angle(a: vec3, b: vec3) -> f32" in out.splitlines()
@@ -121,7 +121,7 @@ def test_list_as_json_is_complete(capsys: Capture) -> None:
     data = json.loads(answer(capsys, "list", "--json"))
     library = load_library()
     assert data["version"] == VERSION
-    assert [f["name"] for f in data["functions"]] == list(library.public)
+    assert [f["name"] for f in data["functions"]] == list(library.documented)
     assert [s["name"] for s in data["structs"]] == list(library.structs)
     (entry,) = [f for f in data["functions"] if f["name"] == "sin_angle"]
     assert [p["domain"] for p in entry["parameters"]] == ["unit vector", "unit vector"]

@@ -18,10 +18,13 @@ from codegen.intervals.tables import CAST, FOLDER, FORMULAS, read_table
 from codegen.ops import BUILTINS, OPERATORS
 
 CITED = ("WGSL", "Vulkan", "SPIR-V", "GLSL", "OpenCL C")
+LOOKUPS = {"lookup", "lookup_level"}
 SILENT = {
-    "glsl": {"sin", "cos", "atan2", "normalize"},
-    "glsl_es": {"sin", "cos", "atan2", "normalize"},
-    "opencl_relaxed": {"/", "atan2"},
+    "wgsl": LOOKUPS,
+    "glsl": {"sin", "cos", "atan2", "normalize"} | LOOKUPS,
+    "glsl_es": {"sin", "cos", "atan2", "normalize"} | LOOKUPS,
+    "opencl": LOOKUPS,
+    "opencl_relaxed": {"/", "atan2"} | LOOKUPS,
 }
 
 

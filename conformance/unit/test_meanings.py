@@ -64,7 +64,7 @@ UNARY: dict[str, Callable[[Any], Any]] = {
     "cos": math.cos,
 }
 POSITIVE = {"sqrt", "inverse_sqrt", "log", "log2"}
-ROWS = {**OPERATORS, **BUILTINS}
+ROWS = {name: row for name, row in {**OPERATORS, **BUILTINS}.items() if row.cost != "texture"}
 PAIRS: dict[Scalar, list[tuple[Any, Any]]] = {F32: [*FLOAT_PAIRS], U32: [*WORD_PAIRS], BOOL: [*TRUTH_PAIRS]}
 
 

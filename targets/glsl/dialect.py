@@ -29,6 +29,7 @@ def _dialect(name: str, title: str, precision: str = "", precise: str = "") -> D
         precision=precision,
         precise=precise,
         half_precision="mediump",
+        texture=(("", "highp sampler2D" if precision else "sampler2D"),),
         line_map="#line {line} {file}",
     )
 

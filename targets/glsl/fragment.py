@@ -3,6 +3,7 @@
 Drivers compile fragments apart from compute: other denormals, other vector code, OpenGL 3.3 will do.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from targets.glsl.runtime import GlslRuntime
 from targets.lanes import UNWRITTEN, check_words
 from targets.protocol import Prepared
+from targets.textures import TextureData
 from targets.words import Words
 
 ROW_LANES = 1024
@@ -40,9 +42,13 @@ class GlslFragmentRuntime(GlslRuntime):
         # moderngl binds again what was bound before, so a frame must not be in use when it is deleted.
         self.idle_frame = self.on_thread(self._context.simple_framebuffer, (1, 1))
 
-    def prepare(self, program: str, words: Words, slots_out: int) -> Prepared:
+    def prepare(
+        self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()
+    ) -> Prepared:
         """Build a program and upload its input; see targets.protocol.TimedRuntime."""
         check_words(words, slots_out)
+        if textures:
+            raise ValueError("no harness of fragments has maps")
         if slots_out > ATTACHMENT_WORDS * MAX_ATTACHMENTS:
             raise ValueError(f"a fragment writes at most {ATTACHMENT_WORDS * MAX_ATTACHMENTS} words")
         shader = self.on_thread(self._build, program)

@@ -7,6 +7,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer HarnessWordsIn { uint harness_words_in[]; };
 layout(std430, binding = 1) writeonly buffer HarnessWordsOut { uint harness_words_out[]; };
 uniform uint harness_count;
+$textures
 
 uint harness_index(int k) { return uint(k) * harness_count + gl_GlobalInvocationID.x; }
 

@@ -3,7 +3,7 @@
 import importlib
 import weakref
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Literal, ParamSpec, TypeVar
 
@@ -21,6 +21,7 @@ from targets.lanes import (
 from targets.packages import first_line, require_package
 from targets.programs import Programs
 from targets.protocol import BuildFailed, Device, Prepared, TargetUnavailable
+from targets.textures import TextureData
 from targets.words import Words
 
 REQUIRED_VERSION = 430
@@ -72,17 +73,27 @@ class GlslRuntime:
         """Call a function on the thread of the context and wait for its result."""
         return self._thread.submit(function, *args, **kwargs).result()
 
-    def run(self, program: str, words: Words, slots_out: int) -> Words:
+    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()) -> Words:
         """Run a program once per lane; see targets.protocol.Runtime."""
         return run_in_chunks(
-            lambda chunk: self.prepare(program, chunk, slots_out), words, slots_out, self.chunk_bytes
+            lambda chunk: self.prepare(program, chunk, slots_out, textures),
+            words,
+            slots_out,
+            self.chunk_bytes,
         )
 
-    def prepare(self, program: str, words: Words, slots_out: int) -> Prepared:
+    def prepare(
+        self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()
+    ) -> Prepared:
         """Build a program and upload its input; see targets.protocol.TimedRuntime."""
         check_words(words, slots_out)
         shader = self.on_thread(self._build, program)
-        return GlslPrepared(self, self._context, shader, words, slots_out)
+        return GlslPrepared(self, self._context, shader, words, slots_out, textures)
+
+    @property
+    def linear(self) -> tuple[int, int]:
+        """Filters of a map: linear within and between levels."""
+        return self._moderngl.LINEAR_MIPMAP_LINEAR, self._moderngl.LINEAR
 
     def raise_error(self) -> None:
         """Raise the context's error, if there is one. Asking clears it."""
@@ -129,7 +140,15 @@ class GlslRuntime:
 class GlslPrepared:
     """A compute program with its buffers."""
 
-    def __init__(self, runtime: GlslRuntime, context: Any, shader: Any, words: Words, slots_out: int) -> None:
+    def __init__(
+        self,
+        runtime: GlslRuntime,
+        context: Any,
+        shader: Any,
+        words: Words,
+        slots_out: int,
+        textures: Sequence[TextureData] = (),
+    ) -> None:
         self._runtime = runtime
         self._context = context
         self._shader = shader
@@ -141,6 +160,7 @@ class GlslPrepared:
         blank = np.full(max(slots_out * words.shape[1], 1), UNWRITTEN, np.uint32)
         self._source = runtime.on_thread(context.buffer, source)
         self._result = runtime.on_thread(context.buffer, blank)
+        self._textures = [runtime.on_thread(self._texture, texture) for texture in textures]
 
     def launch(self) -> None:
         """Run the program over all lanes and wait until it is done."""
@@ -155,6 +175,19 @@ class GlslPrepared:
         """Give the device's memory back."""
         self._runtime.on_thread(self._source.release)
         self._runtime.on_thread(self._result.release)
+        for texture in self._textures:
+            self._runtime.on_thread(texture.release)
+
+    def _texture(self, data: TextureData) -> Any:
+        texture = self._context.texture(data.size, 4, dtype="f4")
+        last = len(data.levels) - 1
+        texture.build_mipmaps(0, last)
+        for k, level in enumerate(data.levels):
+            texture.write(np.ascontiguousarray(level), level=k)
+        linear = self._runtime.linear
+        texture.filter = linear
+        texture.repeat_x, texture.repeat_y = data.repeat_u, data.repeat_v
+        return texture
 
     def _launch(self) -> None:
         lanes = self._shape[1]
@@ -165,6 +198,8 @@ class GlslPrepared:
         else:
             self._source.bind_to_storage_buffer(0)
         self._result.bind_to_storage_buffer(1)
+        for k, texture in enumerate(self._textures):
+            texture.use(k)
         self._shader["harness_count"] = lanes
         self._shader.run(group_count(lanes))
         self._context.memory_barrier()

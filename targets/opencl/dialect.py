@@ -1,6 +1,11 @@
 """OpenCL C 1.2 and 3.0. A truth value is an int there; casts are C's."""
 
+from pathlib import Path
+
 from codegen.emit.dialect import Dialect
+
+LOOKUP = (Path(__file__).parent / "lookup_level.cl").read_text(encoding="utf-8")
+"""Lookups in a packed chain of levels: no software driver has mipmapped images."""
 
 
 def _dialect(name: str) -> Dialect:
@@ -31,6 +36,8 @@ def _dialect(name: str) -> Dialect:
         vectors="cast",
         structs="compound",
         conversions="cast",
+        texture=(("", "image2d_t"), ("_sampler", "sampler_t"), ("_layout", "int4")),
+        lookup_library=LOOKUP,
         line_map='#line {line} "{file}"',
     )
 

@@ -17,7 +17,7 @@ $library
 
 __kernel void harness_main(__global const uint *restrict harness_words_in,
                            __global uint *restrict harness_words_out,
-                           const uint harness_count)
+                           const uint harness_count$textures)
 {
     const uint harness_lane = (uint)get_global_id(0);
     if (harness_lane >= harness_count) {

@@ -19,9 +19,11 @@ from targets.lanes import (
     group_count,
     run_in_chunks,
 )
+from targets.opencl import packed_levels
 from targets.packages import first_line, fits, require_package
 from targets.programs import Programs
 from targets.protocol import BuildFailed, Device, TargetUnavailable
+from targets.textures import TextureData
 from targets.words import Words
 
 DEVICE_VARIABLE = "VAIR_OPENCL_DEVICE"
@@ -64,20 +66,25 @@ class OpenclRuntime:
             device=device.name.strip(),
         )
 
-    def run(self, program: str, words: Words, slots_out: int) -> Words:
+    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()) -> Words:
         """Run a program once per lane; see targets.protocol.Runtime."""
         return run_in_chunks(
-            lambda chunk: self.prepare(program, chunk, slots_out), words, slots_out, self.chunk_bytes
+            lambda chunk: self.prepare(program, chunk, slots_out, textures),
+            words,
+            slots_out,
+            self.chunk_bytes,
         )
 
-    def prepare(self, program: str, words: Words, slots_out: int) -> "OpenclPrepared":
+    def prepare(
+        self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()
+    ) -> "OpenclPrepared":
         """Build a program and upload its input; see targets.protocol.TimedRuntime."""
         check_words(words, slots_out)
         with self._lock:
             # A kernel holds its arguments, so every preparation has a kernel of its own. program.harness_main
             # would warn about repeated retrieval.
             kernel = self._cl.Kernel(self.build(program), "harness_main")
-            return OpenclPrepared(self, kernel, words, slots_out)
+            return OpenclPrepared(self, kernel, words, slots_out, textures)
 
     def build(self, text: str, options: Sequence[str] | None = None) -> Any:
         """A built program; raises BuildFailed.
@@ -99,7 +106,14 @@ class OpenclRuntime:
 class OpenclPrepared:
     """A kernel with its buffers."""
 
-    def __init__(self, runtime: OpenclRuntime, kernel: Any, words: Words, slots_out: int) -> None:
+    def __init__(
+        self,
+        runtime: OpenclRuntime,
+        kernel: Any,
+        words: Words,
+        slots_out: int,
+        textures: Sequence[TextureData] = (),
+    ) -> None:
         self._lock = runtime._lock
         self._cl = runtime._cl
         self._queue = runtime._queue
@@ -112,7 +126,24 @@ class OpenclPrepared:
         copy = flags.COPY_HOST_PTR
         self._source = self._cl.Buffer(runtime._context, flags.READ_ONLY | copy, hostbuf=source)
         self._result = self._cl.Buffer(runtime._context, flags.READ_WRITE | copy, hostbuf=blank)
-        kernel.set_args(self._source, self._result, np.uint32(words.shape[1]))
+        self._images = [self._image(runtime, data) for data in textures]
+        # Held here: a kernel does not keep its sampler alive.
+        self._sampler = self._cl.Sampler(
+            runtime._context, False, self._cl.addressing_mode.CLAMP_TO_EDGE, self._cl.filter_mode.LINEAR
+        )
+        maps = [
+            argument
+            for image, data in zip(self._images, textures, strict=True)
+            for argument in (image, self._sampler, packed_levels.layout(data))
+        ]
+        kernel.set_args(self._source, self._result, np.uint32(words.shape[1]), *maps)
+
+    def _image(self, runtime: OpenclRuntime, data: TextureData) -> Any:
+        cl, texels = self._cl, packed_levels.packed(data)
+        height, width = texels.shape[:2]
+        form = cl.ImageFormat(cl.channel_order.RGBA, cl.channel_type.FLOAT)
+        flags = cl.mem_flags.READ_ONLY | cl.mem_flags.COPY_HOST_PTR
+        return cl.create_image(runtime._context, flags, form, shape=(width, height), hostbuf=texels)
 
     def launch(self) -> None:
         """Run the program over all lanes and wait until it is done."""
@@ -138,6 +169,8 @@ class OpenclPrepared:
         with self._lock:
             self._source.release()
             self._result.release()
+            for image in self._images:
+                image.release()
 
 
 def _choose_device(cl: Any, wanted: str) -> Any:

@@ -28,6 +28,7 @@ DIALECTS = {
         half_enable="enable f16;",
         conditional="select",
         guard=False,
+        texture=(("", "texture_2d<f32>"), ("_sampler", "sampler")),
     )
 }
 DEFAULT = "wgsl"

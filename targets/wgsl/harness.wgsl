@@ -6,6 +6,7 @@ $library
 @group(0) @binding(1) var<storage, read_write> harness_words_out: array<u32>;
 @group(0) @binding(2) var<uniform> harness_count: u32;
 var<private> harness_lane: u32;
+$textures
 
 fn harness_index(k: u32) -> u32 { return k * harness_count + harness_lane; }
 

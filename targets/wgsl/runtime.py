@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from collections.abc import Sequence
 from importlib.metadata import version
 from threading import RLock
 from typing import Any
@@ -20,6 +21,7 @@ from targets.lanes import (
 from targets.packages import first_line, fits, require_package
 from targets.programs import Programs
 from targets.protocol import BuildFailed, Device, TargetUnavailable
+from targets.textures import TextureData
 from targets.words import Words
 
 ADAPTER_VARIABLE = "VAIR_WGPU_ADAPTER"
@@ -29,7 +31,8 @@ PREFERRED_BACKENDS = ("Vulkan", "Metal", "D3D12", "OpenGL")
 PREFERRED_KINDS = ("DiscreteGPU", "IntegratedGPU", "CPU", "Unknown")
 
 HALF_FEATURE = "shader-f16"
-OPTIONAL_FEATURES = {HALF_FEATURE}
+FILTER_FEATURE = "float32-filterable"
+OPTIONAL_FEATURES = {HALF_FEATURE, FILTER_FEATURE}
 """Asked for where the adapter has them."""
 
 READ_ONLY, READ_WRITE, UNIFORM = "read-only-storage", "storage", "uniform"
@@ -62,27 +65,40 @@ class WgslRuntime:
         largest = self._device.limits["max-storage-buffer-binding-size"]
         self.uniforms = uniforms
         self.half_arithmetic = HALF_FEATURE in wanted
+        self.filters_floats = FILTER_FEATURE in wanted
         self.chunk_bytes = UNIFORM_BYTES if uniforms else min(CHUNK_BYTES, largest)
         self.device = _describe(adapter)
-        self._bindings = self._device.create_bind_group_layout(
-            entries=[
-                {"binding": number, "visibility": wgpu.ShaderStage.COMPUTE, "buffer": {"type": kind}}
-                for number, kind in enumerate((UNIFORM if uniforms else READ_ONLY, READ_WRITE, UNIFORM))
-            ]
-        )
 
-    def run(self, program: str, words: Words, slots_out: int) -> Words:
+    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()) -> Words:
         """Run a program once per lane; see targets.protocol.Runtime."""
         return run_in_chunks(
-            lambda chunk: self.prepare(program, chunk, slots_out), words, slots_out, self.chunk_bytes
+            lambda chunk: self.prepare(program, chunk, slots_out, textures),
+            words,
+            slots_out,
+            self.chunk_bytes,
         )
 
-    def prepare(self, program: str, words: Words, slots_out: int) -> "WgslPrepared":
+    def prepare(
+        self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()
+    ) -> "WgslPrepared":
         """Build a program and upload its input; see targets.protocol.TimedRuntime."""
         check_words(words, slots_out)
         with self._lock:
-            pipeline = self._build(program)
-            return WgslPrepared(self, pipeline, words, slots_out)
+            pipeline = self._build(program, len(textures))
+            return WgslPrepared(self, pipeline, words, slots_out, textures)
+
+    def bindings(self, textures: int) -> Any:
+        """The layout of the harness's buffers and of so many maps with their samplers."""
+        kinds = [
+            {"buffer": {"type": kind}}
+            for kind in (UNIFORM if self.uniforms else READ_ONLY, READ_WRITE, UNIFORM)
+        ]
+        for _ in range(textures):
+            kinds += [{"texture": {"sample_type": "float"}}, {"sampler": {"type": "filtering"}}]
+        stage = self._wgpu.ShaderStage.COMPUTE
+        return self._device.create_bind_group_layout(
+            entries=[{"binding": number, "visibility": stage, **kind} for number, kind in enumerate(kinds)]
+        )
 
     def create_module(self, text: str) -> Any:
         """A shader module of a valid WGSL text; raises BuildFailed with naga's report."""
@@ -92,12 +108,12 @@ class WgslRuntime:
             except (self._wgpu.GPUError, self._wgpu.GPUPipelineError) as error:
                 raise BuildFailed(str(error).strip()) from error
 
-    def _build(self, program: str) -> Any:
-        return self._programs.find(program, lambda: self._create_pipeline(program))
+    def _build(self, program: str, textures: int) -> Any:
+        return self._programs.find(program, lambda: self._create_pipeline(program, textures))
 
-    def _create_pipeline(self, program: str) -> Any:
+    def _create_pipeline(self, program: str, textures: int) -> Any:
         module = self.create_module(program)
-        layout = self._device.create_pipeline_layout(bind_group_layouts=[self._bindings])
+        layout = self._device.create_pipeline_layout(bind_group_layouts=[self.bindings(textures)])
         try:
             return self._device.create_compute_pipeline(
                 layout=layout, compute={"module": module, "entry_point": "harness_main"}
@@ -109,7 +125,14 @@ class WgslRuntime:
 class WgslPrepared:
     """A compute pipeline with its buffers."""
 
-    def __init__(self, runtime: WgslRuntime, pipeline: Any, words: Words, slots_out: int) -> None:
+    def __init__(
+        self,
+        runtime: WgslRuntime,
+        pipeline: Any,
+        words: Words,
+        slots_out: int,
+        textures: Sequence[TextureData] = (),
+    ) -> None:
         self._lock = runtime._lock
         self._gpu = runtime._device
         self._pipeline = pipeline
@@ -129,12 +152,43 @@ class WgslPrepared:
                 data=np.array([words.shape[1], 0, 0, 0], np.uint32), usage=usage.UNIFORM
             ),
         ]
+        resources = [{"buffer": buffer, "offset": 0, "size": buffer.size} for buffer in self._buffers]
+        self._textures = [self._texture(runtime, data) for data in textures]
+        for texture, data in zip(self._textures, textures, strict=True):
+            resources += [texture.create_view(), self._sampler(data)]
         self._group = self._gpu.create_bind_group(
-            layout=runtime._bindings,
-            entries=[
-                {"binding": number, "resource": {"buffer": buffer, "offset": 0, "size": buffer.size}}
-                for number, buffer in enumerate(self._buffers)
-            ],
+            layout=runtime.bindings(len(textures)),
+            entries=[{"binding": number, "resource": found} for number, found in enumerate(resources)],
+        )
+
+    def _texture(self, runtime: WgslRuntime, data: TextureData) -> Any:
+        if not runtime.filters_floats:
+            raise TargetUnavailable("this WebGPU adapter does not filter float32 maps (float32-filterable)")
+        usage = runtime._wgpu.TextureUsage
+        texture = self._gpu.create_texture(
+            size=(*data.size, 1),
+            format="rgba32float",
+            mip_level_count=len(data.levels),
+            usage=usage.TEXTURE_BINDING | usage.COPY_DST,
+        )
+        for k, level in enumerate(data.levels):
+            height, width = level.shape[:2]
+            self._gpu.queue.write_texture(
+                {"texture": texture, "mip_level": k, "origin": (0, 0, 0)},
+                np.ascontiguousarray(level),
+                {"offset": 0, "bytes_per_row": 16 * width, "rows_per_image": height},
+                (width, height, 1),
+            )
+        return texture
+
+    def _sampler(self, data: TextureData) -> Any:
+        edges = {True: "repeat", False: "clamp-to-edge"}
+        return self._gpu.create_sampler(
+            address_mode_u=edges[data.repeat_u],
+            address_mode_v=edges[data.repeat_v],
+            mag_filter="linear",
+            min_filter="linear",
+            mipmap_filter="linear",
         )
 
     def launch(self) -> None:
@@ -165,8 +219,8 @@ class WgslPrepared:
     def release(self) -> None:
         """Give the device's memory back."""
         with self._lock:
-            for buffer in self._buffers:
-                buffer.destroy()
+            for resource in (*self._buffers, *self._textures):
+                resource.destroy()
 
 
 def _choose_adapter(wgpu: Any, wanted: str) -> Any:

@@ -8,7 +8,20 @@ from dataclasses import replace
 from typing import Any, TypeVar
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, I32, U32, VALUE_TYPES, VEC3, Field, Struct, Type, Vector, vector_of
+from codegen.ir.types import (
+    BOOL,
+    F32,
+    I32,
+    TEXTURE,
+    U32,
+    VALUE_TYPES,
+    VEC3,
+    Field,
+    Struct,
+    Type,
+    Vector,
+    vector_of,
+)
 from codegen.ops import BUILTINS, OPERATORS
 
 T = TypeVar("T")
@@ -74,7 +87,7 @@ def _operation(choose: Choose, type_: Type, depth: int) -> ir.Expr:
         (op, types)
         for op in (*OPERATORS.values(), *BUILTINS.values())
         for types, result in op.rule
-        if result == type_
+        if result == type_ and TEXTURE not in types
     ]
     if not rows:
         return _leaf(choose, type_)

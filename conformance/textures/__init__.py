@@ -1,0 +1,1 @@
+"""Maps for tests of lookups, and how near drivers come to float32 filter weights."""
