@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,9 @@ import numpy as np
 from codegen.backends import dialect
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
+from codegen.ir import nodes as ir
+from codegen.ir.domains import Interval, Unit
+from codegen.ir.types import F32, Array, Vector
 from codegen.library import Library
 from codegen.passes.operations import operations
 from codegen.passes.specialise import Specialised, specialise
@@ -20,7 +23,8 @@ from codegen.scene.document import Scene
 from codegen.scene.environment import ConstantLight, MapError
 from codegen.scene.errors import Floats, Reference, as_floats
 from codegen.scene.general import General, general_function
-from codegen.scene.knowledge import Knowledge, knowledge, model_ranges
+from codegen.scene.knowledge import Given, Knowledge, knowledge, model_ranges
+from codegen.scene.lights import UNROLLED
 from codegen.scene.points import SEED, Points, draw
 from codegen.scene.prices import Prices
 from codegen.scene.proof import Proof, Results, prove
@@ -127,7 +131,7 @@ class Builder:
             general=general,
             known=known,
             targets=results,
-            remaining=self.remaining(library, general, known, next(iter(reduced.values()))),
+            remaining=self.remaining(library, results[0].reduced),
             environment=error,
             constant_lights=tuple(constant),
             seconds=time.perf_counter() - begin,
@@ -258,25 +262,34 @@ class Builder:
 
         return environment.measured_error(pixels, lights, shade, ENVIRONMENT_POINTS)
 
-    def remaining(
-        self, library: Library, general: General, known: Knowledge, reduced: Reduced
-    ) -> list[Remaining]:
+    def remaining(self, library: Library, reduced: Reduced) -> list[Remaining]:
         """What each parameter costs that is left: operations that go if it is constant, dearest first."""
         f = reduced.final.function
         extended = library.with_functions([f])
-        points = draw(self.scene, general, 64)
         found = []
         for p in f.parameters:
-            value = np.asarray(points.inputs[p.name])[7].tolist()
-            given = tuple(value) if isinstance(value, list) else value
-            made = specialise(extended, f.name, {p.name: given}, new_name="scene_probe")
-            found.append(Remaining(p.name, sum(operations(made.function).values())))
+            value = _simple_value(p)
+            if value is not None:
+                made = specialise(extended, f.name, {p.name: value}, new_name="scene_probe", unroll=UNROLLED)
+                found.append(Remaining(p.name, sum(operations(made.function).values())))
         return sorted(found, key=lambda r: r.operations)
+
+
+def _simple_value(p: ir.Parameter) -> Given | None:
+    """A constant as a host would choose it: an axis of the frame, white, the middle; none for arrays."""
+    if isinstance(p.type, Array):
+        return None
+    if isinstance(p.domain, Unit):
+        return (0.0, 0.0, 1.0)
+    if isinstance(p.type, Vector):
+        one = p.domain.high if isinstance(p.domain, Interval) else 1.0
+        return (min(one, 1.0),) * p.type.size
+    low, high = (p.domain.low, p.domain.high) if isinstance(p.domain, Interval) else (0.0, 1.0)
+    middle = 0.5 * (low + high)
+    return float(np.float32(middle)) if p.type == F32 else int(middle)
 
 
 def _lit_by_one(scene: Scene) -> Scene:
     """The scene under a single directional light."""
-    from dataclasses import replace
-
     lights = replace(scene.lights, directional=1, point=0, environment=None, colour=(0.0, 1.0))
     return replace(scene, lights=lights)

@@ -10,6 +10,9 @@ from codegen.ir.domains import number
 from codegen.scene.document import HALF_STEP
 from codegen.scene.stopwatch import CHAINS, ROUNDS
 
+MOVING = ("scalars",)
+"""Passes that compute nothing; their steps are counted but not listed."""
+
 
 def as_markdown(data: dict[str, Any]) -> str:
     """The report for people."""
@@ -97,6 +100,8 @@ def _exact(data: dict[str, Any]) -> list[str]:
     ]
     rows.append("|---|---|---|---|")
     for step in data["exact_steps"]:
+        if step["pass"] in MOVING:
+            continue
         rows.append(f"| {step['pass']} | `{_cell(step['what'])}` | {_cell(step['why'])} | {step['where']} |")
     return rows
 
@@ -107,8 +112,8 @@ def _cell(text: str) -> str:
 
 def _approximations(data: dict[str, Any]) -> list[str]:
     lines: list[str] = []
-    for t in data["targets"]:
-        lines.append(f"**{t['target']}** (prices: {t['prices']})")
+    for names, t in _alike(data["targets"]):
+        lines.append(f"**{names}** (prices: {t['prices']})")
         lines.append("")
         if not t["approximations"]:
             lines += ["Nothing.", ""]
@@ -122,6 +127,22 @@ def _approximations(data: dict[str, Any]) -> list[str]:
             )
         lines.append("")
     return lines[:-1]
+
+
+def _alike(targets: list[dict[str, Any]]) -> list[tuple[str, dict[str, Any]]]:
+    """Targets with the same approximations together: their names, and the first of them."""
+    found: list[tuple[str, dict[str, Any]]] = []
+    for t in targets:
+        same = [k for k, (_, u) in enumerate(found) if _content(u) == _content(t)]
+        if same:
+            found[same[0]] = f"{found[same[0]][0]}, {t['target']}", found[same[0]][1]
+        else:
+            found.append((t["target"], t))
+    return found
+
+
+def _content(t: dict[str, Any]) -> tuple[Any, ...]:
+    return t["prices"], t["approximations"]
 
 
 def _proofs(data: dict[str, Any]) -> list[str]:
@@ -166,6 +187,9 @@ def _remains(data: dict[str, Any]) -> list[str]:
         saved = now["all"] - dearest["operations_if_constant"]
         name = dearest["parameter"]
         lines[0] += f" The dearest parameter is `{name}`: {saved} operations would go if it were constant."
+        lines[0] += (
+            " Constants are tried as a host would choose them: an axis of the frame, white, the middle."
+        )
         lines += ["", "| parameter | operations if it were constant |", "|---|---|"]
         lines += [f"| `{r['parameter']}` | {r['operations_if_constant']} |" for r in data["remaining"]]
     return lines

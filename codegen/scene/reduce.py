@@ -117,8 +117,8 @@ class Reducer:
         if budget > 0.0:
             powers = self.powers(exact, budget, changes)
             found = self.search.find(prices, budget, frozenset(ROWS) if powers else frozenset())
-            changes += _variants(found, prices)
-            choices = found.choices
+            choices = self.needed(found.choices, powers)
+            changes += _variants(found, choices, prices)
             current = self.specialised(choices, powers)
             current = self.loosened(current, prices, budget, changes)
             current = self.dropped(current, prices, budget, changes)
@@ -157,6 +157,15 @@ class Reducer:
         what = "; ".join(dict.fromkeys(step.what for step in steps))
         changes.append(Change("power", what, "a constant whole exponent needs no logarithm", error.largest))
         return LARGEST
+
+    def needed(self, choices: dict[Path, str], powers: int) -> dict[Path, str]:
+        """The choices without those in terms that the exact passes removed."""
+        whole = self.specialised(choices, powers).function.body
+        for path in sorted(choices, reverse=True):
+            fewer = {p: name for p, name in choices.items() if p != path}
+            if self.specialised(fewer, powers).function.body == whole:
+                choices = fewer
+        return choices
 
     def loosened(
         self, made: Specialised, prices: Prices, budget: float, changes: list[Change]
@@ -247,7 +256,7 @@ def _named(expression: str) -> list[str]:
     return [part.strip() for part in expression.removeprefix("dot(").removesuffix(")").split(",")]
 
 
-def _variants(found: Found, prices: Prices) -> Sequence[Change]:
+def _variants(found: Found, choices: dict[Path, str], prices: Prices) -> Sequence[Change]:
     return [
         Change(
             "variant",
@@ -258,6 +267,7 @@ def _variants(found: Found, prices: Prices) -> Sequence[Change]:
             s.refused,
         )
         for s in found.steps
+        if s.path in choices
     ]
 
 
