@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ from codegen.library import Library
 from conformance.executor import Executor, Job, Result
 from conformance.sweep.positions import Positions
 from conformance.sweep.record import Entry, joined
+from conformance.sweep.source import source_of
 from conformance.sweep.state import State
 from conformance.sweep.task import TOGETHER
 
@@ -29,7 +31,7 @@ def sweep(
     together  whether the targets of a piece are swept by one worker, which computes the reference once;
               for workers none of which has the drivers of all targets: no
     """
-    sources = {name: library.select([name]).source_hash for name in swept}
+    source = functools.cache(functools.partial(source_of, library))
     pieces: dict[tuple[str, str], list[tuple[Job, Entry]]] = {}
     failed: dict[Job, str] = {}
     missing: list[Job] = []
@@ -38,7 +40,7 @@ def sweep(
         pieces.setdefault((job.function, job.target), []).append((job, data))
 
     for job in jobs:
-        data = state.find(job, sources[job.function]) if state else None
+        data = state.find(job, source(job.function, job.target)) if state else None
         if data is None:
             missing.append(job)
         else:
@@ -46,16 +48,18 @@ def sweep(
             progress(Result(job, data))
     for result in one_by_one(executor, missing) if together else executor.run(missing):
         progress(result)
-        source = sources[result.job.function]
+        current = source(result.job.function, result.job.target)
         if not result.done:
             failed[result.job] = result.error
-        elif result.data["source"] != source:
+        elif result.data["source"] != current:
             failed[result.job] = "its source changed while it was swept"
         else:
             finished(result.job, result.data)
             if state:
-                state.add(result, source)
-    entries = [joined(found, swept[name].count, sources[name]) for (name, _), found in pieces.items()]
+                state.add(result, current)
+    entries = [
+        joined(found, swept[name].count, source(name, target)) for (name, target), found in pieces.items()
+    ]
     return entries, failed
 
 

@@ -12,6 +12,7 @@ from conformance.check.engine import Backend, backend
 from conformance.executor import Job
 from conformance.sweep.judge import Block, Judge, reference_of
 from conformance.sweep.positions import positions
+from conformance.sweep.source import source_of
 
 TASK = "conformance.sweep.task:run"
 TOGETHER = "conformance.sweep.task:run_together"
@@ -54,7 +55,11 @@ def run_together(job: Job) -> dict[str, Any]:
             block = Block(reference, parameter, x[k : k + BLOCK])
             for target, judge in judges.items():
                 judge.see(block, got[target][k : k + BLOCK])
-    source = library.select([job.function]).source_hash
     return {
-        target: {"driver": b.driver, "source": source, **judges[target].data()} for target, b in on.items()
+        target: {
+            "driver": b.driver,
+            "source": source_of(library, job.function, target),
+            **judges[target].data(),
+        }
+        for target, b in on.items()
     }

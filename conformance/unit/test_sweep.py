@@ -10,6 +10,7 @@ import pytest
 
 from codegen.evaluate import evaluate
 from codegen.ir.types import F32
+from codegen.kernels import kernel
 from codegen.library import load_library
 from conformance.check import engine
 from conformance.check.engine import Backend
@@ -17,6 +18,7 @@ from conformance.executor import Here, Job, Processes, Result
 from conformance.sweep import judge, record, task
 from conformance.sweep.plan import PIECE, critical, pieces
 from conformance.sweep.positions import Positions, order_of, positions, sweepable
+from conformance.sweep.source import hash_of, source_of
 from conformance.sweep.state import State
 from conformance.sweep.sweep import sweep
 from conformance.sweep.task import BLOCK, CHUNK, TASK, TOGETHER, run, run_together
@@ -170,7 +172,7 @@ def test_targets_swept_together_share_the_reference(monkeypatch: pytest.MonkeyPa
 def test_a_piece_is_swept_for_those_targets_that_lack_it(tmp_path: Path) -> None:
     where = {NAME: SWEPT[NAME]}
     jobs = [Job(TASK, NAME, target, k, k + 9) for target in ("a", "b") for k in (0, 9)]
-    source = LIBRARY.select([NAME]).source_hash
+    source = source_of(LIBRARY, NAME, "a")
     given: list[Job] = []
 
     class Told:
@@ -203,6 +205,15 @@ def test_a_piece_of_other_sources_does_not_count(tmp_path: Path) -> None:
     entries, failed = sweep(LIBRARY, where, jobs, Changed(), State(state))
     assert not entries and not state.exists()
     assert failed == {jobs[0]: "its source changed while it was swept"}
+
+
+def test_comments_are_no_part_of_a_source() -> None:
+    program = kernel(LIBRARY, NAME, "glsl")
+    assert hash_of(f"// a word\n\n{program}\n   // another\n") == hash_of(program)
+    assert hash_of(program.replace("0.0", "1.0")) != hash_of(program)
+    assert hash_of(program, ["a bound"]) != hash_of(program)
+    assert source_of(LIBRARY, NAME, "glsl") == hash_of(program, [b.describe() for b in LIBRARY.bounds[NAME]])
+    assert source_of(LIBRARY, NAME, "numpy") != source_of(LIBRARY, NAME, "glsl")
 
 
 def test_processes_sweep_as_one_process_does() -> None:
