@@ -12,7 +12,9 @@ from typing import Any
 
 from codegen.errors import UserError
 from codegen.library import default_root
+from conformance.bench.record import short_name
 from conformance.bench.run import ONE_THREAD
+from targets import Device
 
 SCHEMA = 1
 COLUMNS = (
@@ -94,7 +96,11 @@ def _row(target: Mapping[str, Any]) -> list[str]:
 
 
 def _driver(target: Mapping[str, Any]) -> str:
-    return str(target.get("driver") or DASH).partition(";")[0] if target.get("executed") else "not executed"
+    """The driver as people call it; vair scene writes device, driver and interface."""
+    if not target.get("executed"):
+        return "not executed"
+    device, driver, api = (str(target.get("driver") or DASH).split("; ", 2) + ["", ""])[:3]
+    return short_name(Device(target["target"], api, driver, device))
 
 
 def _change(values: Mapping[str, float] | None) -> str:

@@ -190,7 +190,7 @@ def test_scenes_become_tables(tmp_path: Path) -> None:
     speed = {"general": {"ns": 8.0}, "final": {"ns": 2.0}, "unit": "ns", "ratio": 0.25}
     target = {
         "target": "glsl",
-        "driver": "llvmpipe",
+        "driver": "llvmpipe (LLVM 15.0.6, 256 bits); Mesa 22.3.6; OpenGL 4.5",
         "executed": True,
         "operations": {"general": {"all": 228}, "exact": {"all": 150}, "final": {"all": 96}},
         "lines": {"general": 90, "final": 40},
