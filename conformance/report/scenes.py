@@ -99,7 +99,7 @@ def _driver(target: Mapping[str, Any]) -> str:
     """The driver as people call it; vair scene writes device, driver and interface."""
     if not target.get("executed"):
         return "not executed"
-    device, driver, api = (str(target.get("driver") or DASH).split("; ", 2) + ["", ""])[:3]
+    device, driver, api = [*str(target.get("driver") or DASH).split("; ", 2), "", ""][:3]
     return short_name(Device(target["target"], api, driver, device))
 
 
