@@ -11,6 +11,7 @@ from codegen.intervals.context import Context
 from codegen.intervals.numbers import LARGEST, SMALLEST, Array
 from codegen.intervals.values import Range
 
+_FAR = 2.0**1000
 PER_ULP = 1.0 + 2.0**-20
 """Granted on a number of ULP that varies with the argument: it may then be taken at the interval's ends."""
 
@@ -24,8 +25,9 @@ def settle(
     normal (Vulkan says so); its neighbours are then not told apart: the interval reaches 0 and the smallest
     normal number.
     """
-    if numbers.unusual(low) or numbers.unusual(high):
-        same = low is high
+    known: numbers.Reach | None = (found := numbers.reach(low, high))
+    if not numbers.usual(found):
+        known, same = None, low is high
         low, high = _below_normal(context, low, high)
         over = ~((low >= -LARGEST) & (high <= LARGEST))
         if over.any():
@@ -35,8 +37,8 @@ def settle(
         if same and (low == high).all():
             high = low
     if codes is not None:
-        low, high = np.where(codes > 0, -np.inf, low), np.where(codes > 0, np.inf, high)
-    return Range(low, high, codes, product)
+        low, high, known = np.where(codes > 0, -np.inf, low), np.where(codes > 0, np.inf, high), None
+    return Range(low, high, codes, product, known)
 
 
 def _below_normal(context: Context, low: Array, high: Array) -> tuple[Array, Array]:
@@ -82,9 +84,10 @@ def rounded(context: Context, low: Array, high: Array) -> tuple[Array, Array]:
 
 def negate(a: Range) -> Range:
     """-a."""
-    low = -a.low
+    low = -a.high
     product = None if a.product is None else (-a.product[1], -a.product[0])
-    return Range(low if a.is_point else -a.high, low, a.cause, product)
+    known = None if a.known is None else (-a.known[1], -a.known[0], a.known[2])
+    return Range(low, low if a.is_point else -a.low, a.cause, product, known)
 
 
 def add(context: Context, a: Range, b: Range) -> Range:
@@ -98,6 +101,10 @@ def add(context: Context, a: Range, b: Range) -> Range:
             low, high = _with_fused(low, high, b, a)
         return settle(context, low, high, codes)
     # Rounding either way, the rounded product's interval holds the unrounded product: fusing adds nothing.
+    if numbers.exact_sums(a.reach, b.reach):
+        total = a.low + b.low
+        top = total if a.is_point and b.is_point else a.high + b.high
+        return settle(context, numbers.down(total), numbers.up(top), codes)
     return settle(context, numbers.sum_down(a.low, b.low), numbers.sum_up(a.high, b.high), codes)
 
 
@@ -135,16 +142,26 @@ def exact_product(a: Range, b: Range) -> tuple[Array, Array]:
         far = np.maximum(np.abs(a.low), np.abs(a.high))
         near = np.maximum(np.maximum(a.low, -a.high), 0.0)
         return near * near, far * far
-    if a.is_point:
+    if a.is_point or (b.reach[0] >= 0.0 and not b.is_point):
         a, b = b, a
+    if a.reach[0] >= 0.0 and not b.is_point:
+        return _of_positive(a, b)
     p, q = a.low * b.low, a.high * b.low
+    low, high = np.minimum(p, q), np.maximum(p, q)
     if b.is_point:
-        return np.minimum(p, q), np.maximum(p, q)
+        return low, high
     r, s = a.low * b.high, a.high * b.high
-    return (
-        np.minimum(np.minimum(p, q), np.minimum(r, s)),
-        np.maximum(np.maximum(p, q), np.maximum(r, s)),
-    )
+    return np.minimum(low, np.minimum(r, s)), np.maximum(high, np.maximum(r, s))
+
+
+def _of_positive(a: Range, b: Range) -> tuple[Array, Array]:
+    """The same where a is nowhere negative: its upper end goes with what lies farther from 0."""
+    bottom, top, _ = b.reach
+    if bottom >= 0.0:
+        return a.low * b.low, a.high * b.high
+    if top <= 0.0:
+        return a.high * b.low, a.low * b.high
+    return np.minimum(a.low * b.low, a.high * b.low), np.maximum(a.low * b.high, a.high * b.high)
 
 
 def outside(row: Row, operand: str, x: Range) -> Array | None:
@@ -203,10 +220,9 @@ def _quotient(x: Range, y: Range) -> tuple[Array, Array]:
     if negative.any():
         x_low, x_high = np.where(negative, -x_high, x_low), np.where(negative, -x_low, x_high)
         y_low, y_high = np.where(negative, -y_high, y_low), np.where(negative, -y_low, y_high)
-    return (
-        x_low / np.where(x_low >= 0.0, y_high, y_low),
-        x_high / np.where(x_high >= 0.0, y_low, y_high),
-    )
+    if y_low is y_high:
+        return x_low / y_low, x_high / y_low
+    return np.minimum(x_low / y_high, x_low / y_low), np.maximum(x_high / y_low, x_high / y_high)
 
 
 def within_ulp(
@@ -231,8 +247,9 @@ def within_ulp(
         spacing = numbers.ulp(most) * PER_ULP
         inside = np.maximum(most - spacing * ulps_high, least)
         last_high = most + np.maximum(spacing, numbers.ulp(inside) * PER_ULP) * ulps_high
-    first_low = np.where(low >= 0.0, np.maximum(first_low, 0.0), first_low)
-    last_high = np.where(high <= 0.0, np.minimum(last_high, 0.0), last_high)
+    # Limits that are 0 where the sign is kept, and far beyond every result where there is none to keep.
+    np.maximum(first_low, np.minimum(low, 0.0) * _FAR, out=first_low)
+    np.minimum(last_high, np.maximum(high, 0.0) * _FAR, out=last_high)
     return numbers.up(first_low), numbers.down(last_high)
 
 

@@ -120,9 +120,11 @@ def _absolute_or_ulp(promise: Absolute, x: Range, low: Array, high: Array) -> tu
     if promise.elsewhere is None or contained.all():
         return near_low, near_high
     far_low, far_high = within_ulp(low, high, promise.elsewhere.ulps, promise.elsewhere.ulps)
+    either_low = numbers.select(touches, np.minimum(near_low, far_low), far_low)
+    either_high = numbers.select(touches, np.maximum(near_high, far_high), far_high)
     return (
-        np.where(contained, near_low, np.where(touches, np.minimum(near_low, far_low), far_low)),
-        np.where(contained, near_high, np.where(touches, np.maximum(near_high, far_high), far_high)),
+        numbers.select(contained, near_low, either_low),
+        numbers.select(contained, near_high, either_high),
     )
 
 

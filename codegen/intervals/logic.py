@@ -24,7 +24,7 @@ def compare(context: Context, op: str, a: Number, b: Number) -> Truth:
         if codes is not None:  # a value that may be anything, NaN included, tells nothing by its order
             true, false = true | (codes > 0), false | (codes > 0)
             undecided = undecided & (codes == 0)
-    way = context.fork(np.where(undecided, 2, 1))
+    way = context.fork(undecided.astype(np.int64) + 1)
     if way is None:
         return Truth(true, false)
     holds, fails = undecided & (way == 1), undecided & (way == 0)
@@ -64,10 +64,10 @@ def _narrow(op: str, a: Number, b: Number, where: Array) -> None:
 
 def _cut(x: Number, where: Array, least: Array | None, most: Array | None) -> None:
     low, high = x.low, x.high
-    if least is not None:
-        x.low = np.where(where, np.maximum(low, least), low)
-    if most is not None:
-        x.high = np.where(where, np.minimum(high, most), high)
+    x.cut(
+        low if least is None else np.where(where, np.maximum(low, least), low),
+        high if most is None else np.where(where, np.minimum(high, most), high),
+    )
 
 
 def floor(context: Context, x: Range) -> Range:

@@ -27,10 +27,13 @@ numpy's vector routines state at most 4 ULP (numpy, "SIMD math", simd/ufuncs); g
 # The 29 bits of a float64 significand that a float32 significand lacks.
 _EXTRA = np.int64((1 << 29) - 1)
 _KEPT = np.int64(~((1 << 29) - 1))
-_SIGNLESS = np.int64((1 << 63) - 1)
 _EXPONENT = np.int64(0x7FF << 52)
 _SMALLEST_BITS = np.float64(SMALLEST).view(np.int64)
-_NORMAL_SPAN = np.uint64(int(np.float64(LARGEST).view(np.int64)) - int(_SMALLEST_BITS))
+EXACT_SPAN = 2.0**27
+"""Magnitudes of float32 numbers within this ratio have sums that float64 holds: 24 + 27 + 2 bits."""
+
+Reach = tuple[float, float, float]
+"""Least lower end, greatest upper end and least magnitude of any end of some intervals; NaN beside NaN."""
 
 
 def down(x: Array) -> Array:
@@ -54,6 +57,14 @@ def up(x: Array) -> Array:
     return moved.view(np.float64)
 
 
+def select(mask: Array, a: Array, b: Array) -> Array:
+    """a where the mask is set, else b, for 8-byte numbers; as quick for any mask, which np.where is not."""
+    keep = mask.astype(np.int64)
+    np.negative(keep, out=keep)
+    other = b.view(np.int64)
+    return np.asarray((((a.view(np.int64) ^ other) & keep) ^ other).view(b.dtype))
+
+
 def nearest(x: Array) -> Array:
     """The float32 nearest to x, ties to even; infinite above the largest."""
     return x.astype(np.float32).astype(np.float64)
@@ -70,11 +81,27 @@ def ulp(x: Array) -> Array:
     return np.asarray(bits.view(np.float64) * 2.0**-23)
 
 
-def unusual(x: Array) -> bool:
-    """Whether any element is zero, below the normal numbers, above the largest float32, or NaN."""
-    bits = x.view(np.int64) & _SIGNLESS
-    bits -= _SMALLEST_BITS
-    return bool((bits.view(np.uint64) > _NORMAL_SPAN).any())
+def reach(low: Array, high: Array) -> Reach:
+    """How far the intervals between two arrays of ends reach."""
+    bottom, top = float(low.min()), float(high.max())
+    if bottom > 0.0:
+        return bottom, top, bottom
+    if top < 0.0:
+        return bottom, top, -top
+    near = float(np.abs(low).min())
+    return bottom, top, near if high is low else min(near, float(np.abs(high).min()))
+
+
+def usual(found: Reach) -> bool:
+    """Whether every end is an ordinary float32: neither 0, below the normal numbers, above all, nor NaN."""
+    bottom, top, near = found
+    return near >= SMALLEST and bottom >= -LARGEST and top <= LARGEST
+
+
+def exact_sums(a: Reach, b: Reach) -> bool:
+    """Whether float64 holds every sum of two float32 of these intervals without rounding."""
+    near = min(a[2], b[2])
+    return near >= SMALLEST and max(-a[0], a[1], -b[0], b[1]) <= near * EXACT_SPAN
 
 
 def sum_down(x: Array, y: Array) -> Array:

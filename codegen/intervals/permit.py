@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
+from collections import deque
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
@@ -23,6 +26,8 @@ from codegen.library import Library
 
 CHUNK = 16384
 """Lanes evaluated together: few enough for the arrays of an operation to stay in the processor's cache."""
+THREADS = min(2, os.cpu_count() or 1)
+"""Chunks evaluated at a time: numpy leaves the interpreter to others while it computes."""
 DEPTH = 6
 """Forks that one lane is followed through; further ones count by their hull."""
 MOST_PARTS = 32
@@ -106,22 +111,49 @@ class _Run:
         self.codes = np.zeros(self.count, np.int16)
 
     def run(self, follow_forks: bool) -> Permitted:
-        with np.errstate(all="ignore"):
-            everyone = np.arange(self.count)
-            forks = np.full(self.count, -1, np.int32)
-            widths = np.zeros(self.count, np.int32)
-            for part in _chunks(everyone):
-                found = self.evaluate(part, None)
-                self.store(part, found, fresh=np.ones(len(part), np.bool_))
-                forks[part], widths[part] = found.first_fork, found.width
-            if follow_forks and (forks >= 0).any():
-                self.follow(np.flatnonzero(forks >= 0), forks, widths)
+        self.library.select([self.function.name])  # all that is called, before threads ask for it
+        forks = np.full(self.count, -1, np.int32)
+        widths = np.zeros(self.count, np.int32)
+        for part, found in self.each_chunk(np.arange(self.count), None):
+            self.store(part, found, fresh=np.ones(len(part), np.bool_))
+            forks[part], widths[part] = found.first_fork, found.width
+        if follow_forks and (forks >= 0).any():
+            self.follow(np.flatnonzero(forks >= 0), forks, widths)
         shape = self.function.returns
         causes = tuple(self.book.causes)
         return Permitted(_build(shape, self.low), _build(shape, self.high), self.codes, causes)
 
-    def evaluate(self, lanes: Array, ways: Ways | None) -> _Found:
-        context = Context(self.table, self.book, len(lanes), ways)
+    def each_chunk(self, owner: Array, ways: Ways | None) -> Iterator[tuple[Array, _Found]]:
+        """Positions in `owner` and what was found there, in order; some chunks are evaluated at a time."""
+        parts = [np.arange(k, min(k + CHUNK, len(owner))) for k in range(0, len(owner), CHUNK)]
+
+        def found(part: Array) -> tuple[_Found, CauseBook]:
+            chosen = None if ways is None else Ways(ways.forks[part], ways.ways[part])
+            with np.errstate(all="ignore"):
+                return self.evaluate(owner[part], chosen)
+
+        if len(parts) < 2 or THREADS < 2:
+            results = map(found, parts)
+            yield from ((part, self.numbered(*result)) for part, result in zip(parts, results, strict=True))
+            return
+        with ThreadPoolExecutor(THREADS) as pool:
+            # A few chunks ahead only: what is found in them is kept until it is asked for.
+            ahead: deque[Future[tuple[_Found, CauseBook]]] = deque()
+            for k, part in enumerate(parts):
+                while len(ahead) < 2 * THREADS and k + len(ahead) < len(parts):
+                    ahead.append(pool.submit(found, parts[k + len(ahead)]))
+                yield part, self.numbered(*ahead.popleft().result())
+
+    def numbered(self, found: _Found, book: CauseBook) -> _Found:
+        """What one chunk found, its causes numbered as in the whole run."""
+        if not book.causes:
+            return found
+        numbers = np.array([0, *(self.book.code(cause) for cause in book.causes)], np.int16)
+        return replace(found, codes=numbers[found.codes])
+
+    def evaluate(self, lanes: Array, ways: Ways | None) -> tuple[_Found, CauseBook]:
+        book = CauseBook()
+        context = Context(self.table, book, len(lanes), ways)
         context.function, context.line = self.function.name, self.function.place.line
         context.operation = "input"
         arguments = {
@@ -135,7 +167,7 @@ class _Run:
         for s in singles:
             if not isinstance(s, Truth) and s.cause is not None:
                 codes = np.where(codes > 0, codes, s.cause)
-        return _Found(low, high, codes, context.first_fork, context.width)
+        return _Found(low, high, codes, context.first_fork, context.width), book
 
     def store(self, lanes: Array, found: _Found, fresh: Array) -> None:
         """Put results in: alone where fresh, else as the hull with what is there."""
@@ -162,13 +194,12 @@ class _Run:
             index = np.repeat(np.flatnonzero(kept), width[kept])
             if not len(index):
                 break
-            way = np.concatenate([np.arange(w) for w in width[kept]])
+            way = _counted(width[kept])
             path = Ways(path.forks[index], path.ways[index])
             path.forks[:, depth], path.ways[:, depth] = fork[index], way
             owner = owner[index]
             open_fork, open_width = np.empty(len(owner), np.int32), np.empty(len(owner), np.int32)
-            for part in _chunks(np.arange(len(owner))):
-                found = self.evaluate(owner[part], Ways(path.forks[part], path.ways[part]))
+            for part, found in self.each_chunk(owner, path):
                 open_fork[part], open_width[part] = found.first_fork, found.width
                 done = (found.first_fork < 0) | (depth == DEPTH - 1)
                 # The first finished way of a lane replaces its hull, later ones join it.
@@ -203,9 +234,10 @@ class _Found:
         )
 
 
-def _chunks(lanes: Array) -> Iterator[Array]:
-    for start in range(0, len(lanes), CHUNK):
-        yield lanes[start : start + CHUNK]
+def _counted(widths: Array) -> Array:
+    """0, 1, ... below each width, one after another."""
+    ends = np.cumsum(widths)
+    return np.asarray(np.arange(ends[-1]) - np.repeat(ends - widths, widths))
 
 
 def _dtype(kind: Scalar) -> type[np.generic]:

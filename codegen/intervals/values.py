@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from codegen.intervals.causes import Codes, first
-from codegen.intervals.numbers import Array
+from codegen.intervals.numbers import Array, Reach, reach, select
 
 
 @dataclass(eq=False, slots=True)
@@ -23,16 +23,28 @@ class Range:
     low, high  ends, both included; the same array for values that are known exactly
     cause      numbers of causes where the value may be anything, NaN included; its ends are then infinite
     product    for a rounded product, bounds of the unrounded one: a multiply-add may use it
+    known      its reach, see codegen.intervals.numbers.reach, once it was asked for
     """
 
     low: Array
     high: Array
     cause: Codes = None
     product: tuple[Array, Array] | None = None
+    known: Reach | None = None
 
     @property
     def is_point(self) -> bool:
         return self.low is self.high
+
+    @property
+    def reach(self) -> Reach:
+        if self.known is None:
+            self.known = reach(self.low, self.high)
+        return self.known
+
+    def cut(self, low: Array, high: Array) -> None:
+        """Narrow it in place, for all who hold it."""
+        self.low, self.high, self.known = low, high, None
 
 
 @dataclass(eq=False, slots=True)
@@ -47,6 +59,10 @@ class Whole:
     @property
     def is_point(self) -> bool:
         return self.low is self.high
+
+    def cut(self, low: Array, high: Array) -> None:
+        """Narrow it in place, for all who hold it."""
+        self.low, self.high = low, high
 
     @property
     def limits(self) -> tuple[int, int]:
@@ -137,12 +153,12 @@ def _choose(condition: Truth, a: Single, b: Single) -> Single:
 
 def _hull(t: Array, f: Array, a: N, b: N) -> tuple[Array, Array]:
     both = t & f
-    low = np.where(t, a.low, b.low)
+    low = select(t, a.low, b.low)
     if not both.any():
-        return (low, low) if a.is_point and b.is_point else (low, np.where(t, a.high, b.high))
+        return (low, low) if a.is_point and b.is_point else (low, select(t, a.high, b.high))
     return (
-        np.where(both, np.minimum(a.low, b.low), low),
-        np.where(both, np.maximum(a.high, b.high), np.where(t, a.high, b.high)),
+        select(both, np.minimum(a.low, b.low), low),
+        select(both, np.maximum(a.high, b.high), select(t, a.high, b.high)),
     )
 
 
