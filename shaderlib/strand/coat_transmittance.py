@@ -5,11 +5,6 @@ from shaderlib.domains import Extinction, PathLength
 from shaderlib.lang import exp, f32, min, variant
 
 # Minimax in the absolute error against e^-x; x is held at the limit, where both are below the error.
-# (1 + x (c1 + x (c2 + x c3)))^-4: 2.3e-4
-RATIONAL_1 = 0.250718355  # 3e805e28
-RATIONAL_2 = 0.0292793382  # 3cefdb39
-RATIONAL_3 = 0.00382548035  # 3b7ab4e9
-RATIONAL_LIMIT = 88.0
 # (1 + x (c1 + x c2))^16: 2.2e-4
 QUADRATIC16_1 = -0.0623984113  # bd7f957a
 QUADRATIC16_2 = 0.00180275296  # 3aec4a5a
@@ -70,21 +65,3 @@ def coat_transmittance_quadratic16(extinction: Extinction, path: PathLength) -> 
     r4 = r2 * r2
     r8 = r4 * r4
     return r8 * r8
-
-
-@variant("coat_transmittance")
-def coat_transmittance_rational(extinction: Extinction, path: PathLength) -> f32:
-    """Fraction of light that passes a coat, as a rational function: a ninth of half an 8-bit step.
-
-    extinction  extinction coefficient, per scene unit, in [0, 1e18]
-    path        length of the way, in scene units, in [0, 1e18]
-    returns     e^-(extinction path) to 2.4e-4 absolute, in (0, 1], falling to 1e-11
-    degenerate  extinction 0 or path 0: 1
-    form        the reciprocal of the fourth power of a cubic, x = extinction path held at 88; no relative
-                accuracy above x = 7
-    source      fitted for this library
-    """
-    x = min(extinction * path, RATIONAL_LIMIT)
-    r = 1.0 + x * (RATIONAL_1 + x * (RATIONAL_2 + x * RATIONAL_3))
-    r2 = r * r
-    return 1.0 / (r2 * r2)
