@@ -26,7 +26,7 @@ from codegen.emit.stmt import StmtPrinter
 from codegen.evaluate.arrays import Value
 from codegen.execute import Words, flatten
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, I32, Scalar, Type, Vector, leaves
+from codegen.ir.types import F32, I32, Array, Scalar, Type, Vector, leaves
 from codegen.library import Library
 
 SOFTWARE = ("llvmpipe", "lavapipe", "softpipe", "swiftshader", "pocl", "portable computing", "pthread", "cpu")
@@ -160,7 +160,8 @@ def _words(f: ir.Function, inputs: Mapping[str, Value], lanes: int) -> Words:
         value = inputs[p.name]
         assert not isinstance(value, dict)
         repeats = -(-lanes // len(value))
-        parts.append(np.tile(value, (repeats, 1) if value.ndim == 2 else repeats)[:lanes])
+        rows = np.tile(value, (repeats, *[1] * (value.ndim - 1)))[:lanes]
+        parts.append({str(k): rows[:, k] for k in range(p.type.size)} if isinstance(p.type, Array) else rows)
     return flatten(parts, lanes)
 
 
@@ -204,9 +205,15 @@ def _evaluation(f: ir.Function, chain: int, state: str, call: bool) -> Iterator[
         yield ir.Assign(state, _sum(moved))
         return
     supply = iter(moved)
-    arguments = tuple(_built(p.type, supply) for p in f.parameters)
+    arguments: list[ir.Expr] = []
+    for p in f.parameters:
+        value = _built(p.type, supply)
+        if isinstance(p.type, Array):  # OpenCL takes arrays by name only
+            yield ir.Let(f"{p.name}_{chain}", value)
+            value = ir.Var(p.type, f"{p.name}_{chain}")
+        arguments.append(value)
     result = ir.Var(f.returns, f"value_{chain}")
-    yield ir.Let(result.name, ir.Call(f.returns, DEFAULT_PREFIX + f.name, arguments))
+    yield ir.Let(result.name, ir.Call(f.returns, DEFAULT_PREFIX + f.name, tuple(arguments)))
     assert isinstance(f.returns, Vector)
     yield ir.Assign(state, _sum([ir.Swizzle(F32, result, c) for c in "xyzw"[: f.returns.size]]))
 
@@ -214,6 +221,8 @@ def _evaluation(f: ir.Function, chain: int, state: str, call: bool) -> Iterator[
 def _built(type_: Type, supply: Iterator[ir.Expr]) -> ir.Expr:
     if isinstance(type_, Scalar):
         return next(supply)
+    if isinstance(type_, Array):
+        return ir.Construct(type_, tuple(_built(type_.element, supply) for _ in range(type_.size)))
     assert isinstance(type_, Vector)
     return ir.Construct(type_, tuple(next(supply) for _ in range(type_.size)))
 

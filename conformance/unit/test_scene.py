@@ -49,7 +49,7 @@ NEUTRAL = {
     "no skin": ("skin = [0.0, 0.0, 0.0]", {"skin"}),
     "upright": ('t = "n"', {"t"}),
 }
-POINTS = 400
+POINTS = 300
 
 
 def scene_of(folder: Path, text: str) -> Scene:
@@ -295,7 +295,9 @@ def test_nothing_is_written_where_something_is_refused(
 
 
 def test_a_failed_proof_names_the_term(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = scene_of(tmp_path, SMALL)
+    scene = scene_of(tmp_path, SMALL.replace("[scene]", '[scene]\ntargets = ["wgsl"]'))
+    monkeypatch.setattr(build, "PROOF_POINTS", 2000)
+    monkeypatch.setattr(build, "SEARCH_POINTS", 2000)
 
     def failing(*arguments: Any) -> Proof:
         return replace(prove(*arguments), error=Measured(1.0, 1.0, 0, True))
