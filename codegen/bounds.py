@@ -21,7 +21,7 @@ class Bound:
              the largest component; exact: bit for bit
     where    feature -> closed interval; the bound holds for inputs with every feature inside. Features are
              scalar parameters, struct fields (p.field), components (u.y), angle(x, y) between x and the
-             line of y, dot(x, y) and length(x)
+             line of y, apart(x, y) of two numbers, dot(x, y) and length(x)
     field    the field of a struct result it speaks of; all fields if empty
     targets  the targets it speaks of; all if empty
     domain   the same in words, for the emitted comment

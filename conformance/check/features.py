@@ -1,4 +1,4 @@
-"""Features that a bound speaks of: an input, its field or component, angle(x, y), dot(x, y), length(x)."""
+"""Features of inputs that bounds speak of: numbers, angle(x, y), apart(x, y), dot(x, y), length(x)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from codegen.bounds import Bound
 from codegen.errors import UserError, nearest
 
 Array = npt.NDArray[Any]
-_CALL = re.compile(r"^(angle|dot|length)\(([\w.]+)(?:, *([\w.]+))?\)$")
+_CALL = re.compile(r"^(angle|apart|dot|length)\(([\w.]+)(?:, *([\w.]+))?\)$")
 
 
 def lookup(inputs: Mapping[str, Any], path: str) -> Array:
@@ -31,7 +31,10 @@ def lookup(inputs: Mapping[str, Any], path: str) -> Array:
 
 
 def feature(inputs: Mapping[str, Any], text: str) -> Array:
-    """The feature's value per lane. angle(x, y) is the angle between x and the line of y, in [0, pi/2]."""
+    """The feature's value per lane.
+
+    angle(x, y) is the angle between x and the line of y, in [0, pi/2]; apart(x, y) is |x - y| of two numbers.
+    """
     call = _CALL.match(text)
     if call is None:
         return lookup(inputs, text)
@@ -40,6 +43,8 @@ def feature(inputs: Mapping[str, Any], text: str) -> Array:
     if kind == "length":
         return np.asarray(np.linalg.norm(a, axis=-1))
     b = lookup(inputs, second)
+    if kind == "apart":
+        return np.asarray(np.abs(a - b))
     if kind == "dot":
         return np.asarray(np.sum(a * b, axis=-1))
     # Products of float32 numbers are exact in float64, so that a plain cross product keeps small angles.
