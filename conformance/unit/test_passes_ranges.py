@@ -16,9 +16,10 @@ import numpy as np
 import pytest
 
 from codegen.evaluate import evaluate
+from codegen.intervals import TABLES, permitted
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Interval, Unit
-from codegen.ir.types import BOOL, F32, VEC3, Field, Struct
+from codegen.ir.types import BOOL, F32, I32, VEC3, Field, Struct, array_of
 from codegen.library import load_library
 from codegen.passes.inline import Inliner, joined
 from codegen.passes.norms import Lengths
@@ -191,3 +192,28 @@ def test_truth_value_of_a_decided_comparison() -> None:
     values, ranges, given = known(x=(1.0, 2.0), y=(2.5, 3.0))
     (decided,) = ranges.bounds(values.binary("<", given["x"], given["y"], BOOL))
     assert (decided.low, decided.high) == (1.0, 1.0)
+
+
+def test_range_of_one_number_holds_what_every_table_permits() -> None:
+    values, ranges, given = known(x=(7.5, 7.5))
+    power = values.build(ir.Builtin(F32, "exp", (given["x"],)))
+    body = (ir.Return(ir.Builtin(F32, "exp", (ir.Var(F32, "x"),))),)
+    parameters = (ir.Parameter("x", F32, None),)
+    f = replace(LIBRARY.function("safe_sqrt"), name="probe", parameters=parameters, body=body)
+    library = LIBRARY.with_functions([f])
+    found = [permitted(library, "probe", {"x": [7.5]}, table) for table in TABLES]
+    low = [float(np.ravel(p.low)[0]) for p in found if not isinstance(p.low, dict)]
+    high = [float(np.ravel(p.high)[0]) for p in found if not isinstance(p.high, dict)]
+    (bound,) = ranges.bounds(power)
+    assert (bound.low, bound.high) == (min(low), max(high))
+    assert len(set(low)) > 1
+
+
+def test_elements_of_an_array_are_not_one_value() -> None:
+    array = array_of(F32, 3)
+    values = Values(parameters={"a": ir.Parameter("a", array, Interval(0.0, 1.0))})
+    whole = values.intern(ir.Var(array, "a"))
+    first, second = (values.build(ir.Index(F32, whole, values.number(k, I32))) for k in (0, 1))
+    ranges = Ranges(values)
+    assert ranges.bounds(values.binary("-", first, second))[0].low == -1.0
+    assert ranges.bounds(values.binary("-", first, first))[0].high == 0.0
