@@ -350,6 +350,14 @@ def test_only_variants_take_the_reference_and_the_exemptions_of_their_base(
     ]
 
 
+def test_own_reference_of_a_variant_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(prepared, "reference_for", lambda *names: asked.append(names))
+    for name in ("sin_angle_half", "sin_angle"):
+        prepared.find_reference(load_library(), load_library().function(name))
+    assert asked == [("sin_angle_half", "sin_angle"), ("sin_angle", None)]
+
+
 def test_function_that_no_formula_fixes_is_held_against_the_evaluator() -> None:
     library = load_library()
     (name,) = PROPERTY_ONLY
