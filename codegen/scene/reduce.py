@@ -81,6 +81,7 @@ class Reducer:
     _made: dict[tuple[object, ...], Specialised] = field(default_factory=dict)
     _cleaned: dict[tuple[ir.Stmt, ...], Specialised] = field(default_factory=dict)
     _errors: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
+    _screened: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
 
     def exact(self) -> Specialised:
         """The function after exact passes only."""
@@ -135,8 +136,10 @@ class Reducer:
 
     def passes(self, function: ir.Function, budget: float) -> bool:
         """Whether the budget holds the error of a function over the few first points."""
-        library = self.library.with_functions([function])
-        return self.search.screen.error(library, function.name).fits(budget)
+        if function.body not in self._screened:
+            library = self.library.with_functions([function])
+            self._screened[function.body] = self.search.screen.error(library, function.name)
+        return self._screened[function.body].fits(budget)
 
     def fits(self, made: Specialised, budget: float) -> Measured | None:
         """The error of a function where the budget holds it."""

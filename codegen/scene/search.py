@@ -42,6 +42,7 @@ class Found:
     steps: tuple[Substitution, ...]
     error: Measured
     saving: float
+    refused: bool = False
 
 
 @dataclass
@@ -87,6 +88,8 @@ class Search:
         settled  functions that become multiplications where their exponent is a whole number
         """
         by_saving = self._climb(prices, budget, settled, lambda saving, error: saving)
+        if not by_saving.refused:
+            return by_saving
         by_error = self._climb(
             prices, budget, settled, lambda saving, error: saving / max(error, 1e-3 * budget)
         )
@@ -103,20 +106,24 @@ class Search:
         steps: list[Substitution] = []
         start = self.error({})
         least = SMALLEST_SAVING * prices.scale * prices.weight(self.model.name)
+        refused = False
         while budget > 0.0:
             offers = [
                 (self._saving(prices, site, option), site, option)
                 for site in sites(self.library, self.model, choices, self.known, settled)
                 for option in site.options
             ]
-            step = self._first_that_fits([o for o in offers if o[0] > least], choices, budget, rank)
+            worth = [offer for offer in offers if offer[0] > least]
+            step = self._first_that_fits(worth, choices, budget, rank)
             if step is None:
+                refused = refused or bool(worth)
                 break
+            refused = refused or bool(step.refused)
             choices = _taken(choices, step.path, step.new)
             steps = [s for s in steps if s.path[: len(step.path)] != step.path]
             steps.append(step)
         total = sum(step.saving for step in steps)
-        return Found(choices, tuple(steps), self.error(choices) if choices else start, total)
+        return Found(choices, tuple(steps), self.error(choices) if choices else start, total, refused)
 
     def _saving(self, prices: Prices, site: Site, option: str) -> float:
         """What an option saves, at most the price of the function whose text holds the call."""
