@@ -1,8 +1,7 @@
 """What specialisation does to small sources, pass by pass: text before, text after.
 
 Plan. Each pass has sources in which only it can make the difference; what is left is printed as GLSL, which a
-person can read, and compared. Every result is verified. Control flow (returns inside branches and loops,
-values carried by loops) is also evaluated beside its source.
+person can read, and compared. Every result is verified. Control flow and powers: test_specialise_flow.py.
 """
 
 from __future__ import annotations
@@ -22,7 +21,6 @@ from codegen.ir import nodes as ir
 from codegen.ir.verify import verify
 from codegen.library import Library, load_library
 from codegen.passes.operations import operations
-from codegen.passes.powers import ROWS, error, multiplications
 from codegen.passes.specialise import Specialised, specialise
 from conformance.unit.support.dialects import ONE_PER_TARGET, dialect_id, validate
 from conformance.unit.support.sources import library_of
@@ -249,101 +247,6 @@ def test_unused_values_are_dropped(tmp_path: Path) -> None:
     found = made(tmp_path, text)
     assert lines(found) == ["return x;"]
     assert found.dropped == ("y",)
-
-
-LOOP = (
-    "def f(x: X, k: X) -> f32:\n    total = x\n    product = 1.0\n    for i in range(20):\n"
-    "        total = total + product * sqrt(abs(k)) + f32(i)\n"
-    "        product = product * 0.5 + total * 0.001\n"
-    "    return total * product\n"
-)
-
-
-def test_what_a_loop_does_not_change_is_computed_before_it(tmp_path: Path) -> None:
-    found = body(tmp_path, LOOP)
-    assert found[0] == "float root = sqrt(abs(k));"
-    assert any(line.startswith("for (") for line in found)
-    assert not any("sqrt" in line for line in found[1:])
-
-
-@pytest.mark.parametrize("unroll", [0, 100])
-def test_loops_compute_what_they_did(tmp_path: Path, unroll: int) -> None:
-    library = library_of(tmp_path, LOOP)
-    found = specialise(library, "f", new_name="g", unroll=unroll)
-    verify(found.function, no_function)
-    loops = [s for s in ir.statements(found.function.body) if isinstance(s, ir.For)]
-    assert len(loops) == (0 if unroll else 1)
-    x = {name: np.linspace(-1.0, 2.0, 50).astype(np.float32) for name in ("x", "k")}
-    special = evaluate(library.with_functions([found.function]), "g", x)
-    np.testing.assert_array_equal(special, evaluate(library, "f", x))
-
-
-CONTROL = {
-    "swap": (
-        "    a = x\n    b = k\n    for i in range(9):\n        c = a\n        a = b\n        b = c\n"
-        "    return a - 2.0 * b\n"
-    ),
-    "return in a loop": (
-        "    y = x\n    for i in range(12):\n        if y > 3.0:\n            return y * k\n"
-        "        y = y + 0.5\n    return -y\n"
-    ),
-    "nested": (
-        "    y = x\n    for i in range(10):\n        if k > 0.5:\n            for j in range(11):\n"
-        "                y = y + k * 0.1\n        else:\n            y = y - exp(k) * f32(i)\n    return y\n"
-    ),
-    "returns all over": (
-        "    y = k\n    if x < 0.0:\n        if k < 0.0:\n            return 1.0\n"
-        "        y = x * k\n    else:\n"
-        "        y = x + k\n        if y > 2.0:\n            return exp(y) / exp(x)\n    z = y * y\n"
-        "    return z + y\n"
-    ),
-    "variable of one side": (
-        "    y = 1.0\n    z = 2.0\n    if x < k:\n        y = exp(x)\n        z = y * log(3.0 + k)\n"
-        "    return y + z\n"
-    ),
-    "loop without use": "    y = x\n    for i in range(30):\n        y = exp(y)\n    return k\n",
-}
-
-
-@pytest.mark.parametrize("name", CONTROL)
-def test_control_flow_computes_what_it_did(tmp_path: Path, name: str) -> None:
-    library = library_of(tmp_path, "def f(x: X, k: X) -> f32:\n" + CONTROL[name])
-    found = specialise(library, "f", new_name="g", unroll=4)
-    verify(found.function, no_function)
-    a, b = np.meshgrid(np.linspace(-2.0, 3.0, 23), np.linspace(-1.0, 2.0, 17))
-    x = {"x": a.ravel().astype(np.float32), "k": b.ravel().astype(np.float32)}
-    special = evaluate(library.with_functions([found.function]), "g", found.arguments(x))
-    assert isinstance(special, np.ndarray)
-    general = evaluate(library, "f", x)
-    assert isinstance(general, np.ndarray)
-    np.testing.assert_array_equal(np.broadcast_to(special, general.shape), general)
-    if name == "loop without use":
-        assert lines(found) == ["return k;"]
-
-
-def test_whole_exponents_become_products_only_when_asked() -> None:
-    exact = specialise(LIBRARY, "pow_one_minus", constants={"p": 16.0}, new_name="f")
-    assert operations(exact.function)["special"] > 0
-    found = specialise(LIBRARY, "pow_one_minus", constants={"p": 13.0}, new_name="f", powers=64)
-    assert operations(found.function)["special"] == 0
-    assert operations(found.function)["arithmetic"] == multiplications(13) + 2
-    assert any(s.name == "powers" for s in found.log)
-
-
-@pytest.mark.parametrize("name", ROWS)
-@pytest.mark.parametrize("exponent", [8, 11, 16, 64, 100])
-def test_product_of_a_whole_exponent_errs_as_stated(name: str, exponent: int) -> None:
-    row = ROWS[name]
-    known = {row.exponent: float(exponent)}
-    found = specialise(LIBRARY, name, constants=known, new_name="f", powers=100)
-    least = 0.5 if name == "safe_pow_near_one" else 0.0
-    base = np.linspace(least, 1.0, 2001).astype(np.float32)
-    inputs = {row.argument: base}
-    got = evaluate(LIBRARY.with_functions([found.function]), "f", inputs, "float32")
-    assert isinstance(got, np.ndarray)
-    exact = ((1.0 - base.astype(np.float64)) if row.roundings else base.astype(np.float64)) ** exponent
-    normal = exact > 1e-30
-    assert (np.abs(got - exact)[normal] <= error(exponent, row.roundings) * exact[normal]).all()
 
 
 def test_variant_stands_in_wherever_its_base_is_called() -> None:
