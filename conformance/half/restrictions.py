@@ -82,6 +82,8 @@ def restrictions(function: Function) -> list[Restriction]:
             assert isinstance(p.domain, Length)
             low, high = LENGTHS[length]
             where[f"length({p.name})"] = (low, min(high, p.domain.high))
+        if any(2.0 * low >= high for path, (low, high) in where.items() if path in dict(exponents)):
+            continue  # hardly an exponent is left
         found.append(Restriction(sum(weight for _, weight in steps), where))
     return sorted(found, key=lambda r: r.penalty)
 

@@ -106,11 +106,11 @@ def survey(library: Library, name: str) -> Found:
                         break
             least = min(least, trial.worst(ways[-1].where, floor))
     if best is None:
-        return _refused(
-            f"it errs by {least:.2g} even in a narrow range, and {LIMIT:.2g} is allowed"
-            if np.isfinite(least)
-            else "its results overflow or are no numbers"
-        )
+        if not np.isfinite(least):
+            return _refused("its results overflow or are no numbers")
+        if least <= LIMIT:
+            return _refused("no range of its domain is held by enough halves")
+        return _refused(f"it errs by {least:.2g} even in a narrow range, and {LIMIT:.2g} is allowed")
     return best[1]
 
 

@@ -207,7 +207,7 @@ def test_a_useless_half_is_refused(
 def test_list_says_where_halves_are_valid(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["list", "--json"]) == 0
     found = {f["name"]: f["half"] for f in json.loads(capsys.readouterr().out)["functions"]}
-    assert set(found) == set(load_library().public)
+    assert {name for name, half in found.items() if half is not None} == set(load_library().public)
     assert found["sin_angle"]["valid"]
     assert found["sin_angle"]["where"]["angle(a, b)"][0] > 0.0
     assert found["pcg_hash"] == {"valid": False, "why": "it has no floating-point numbers", "instead": None}
