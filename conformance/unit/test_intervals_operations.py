@@ -7,6 +7,9 @@ Plan.
   identity    x - x is 0, x * x is not negative, equal expressions are one value
   integers    points are exact and wrap; intervals hold every result
   branches    early returns, loops and undecided conditions
+  shortcuts   sums that float64 holds are told from those that it rounds; choosing by bits is np.where
+  chunks      several at a time give what one after another gives, causes included
+  normalize   a component of a vector that no interval knows is 1 at most, with its roundings
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ import numpy as np
 import pytest
 
 from codegen.evaluate import evaluate
-from codegen.intervals import numbers, permitted, whole
+from codegen.intervals import numbers, permit, permitted, whole
 from codegen.intervals.values import Whole
 from conformance.unit.support.sources import library_of
 
@@ -175,3 +178,67 @@ def test_integers(op: str) -> None:
 
 def point_of(a: Any) -> Whole:
     return Whole(a, a, False)
+
+
+def test_sums_called_exact_are_exact() -> None:
+    rng = np.random.default_rng(SEED)
+    for exponent in (0, 20, 26, 27, 28, 40, 60):
+        x = np.ldexp(1.0 + rng.integers(0, 2**23, 400) * 2.0**-23, exponent)
+        y = -(1.0 + rng.integers(0, 2**23, 400) * 2.0**-23)
+        exact = numbers.exact_sums(numbers.reach(x, x), numbers.reach(y, y))
+        assert exact == (exponent <= 26)
+        if exact:
+            total = x + y
+            assert np.array_equal((total - x) - y, np.zeros(400))
+    zero = np.zeros(3)
+    assert not numbers.exact_sums(numbers.reach(zero, zero), numbers.reach(zero, zero))
+    assert not numbers.usual(numbers.reach(np.array([1.0, np.nan]), np.array([1.0, 2.0])))
+    assert not numbers.usual(numbers.reach(np.array([-np.inf, 1.0]), np.array([1.0, 2.0])))
+    assert numbers.reach(np.array([-3.0, 1.0]), np.array([-2.0, 5.0])) == (-3.0, 5.0, 1.0)
+
+
+def test_select_is_where() -> None:
+    x, y = float32_numbers(500), -float32_numbers(500)
+    mask = np.arange(500) % 3 == 0
+    assert np.array_equal(numbers.select(mask, x, y), np.where(mask, x, y))
+    assert np.array_equal(numbers.select(mask, x[:1], y), np.where(mask, x[:1], y))
+    whole_numbers = np.arange(500)
+    assert np.array_equal(
+        numbers.select(mask, whole_numbers, -whole_numbers), np.where(mask, 1, -1) * whole_numbers
+    )
+
+
+CHUNKED = """def probe(x: X) -> f32:
+    y = 1.0 / x if x > 0.5 else log(x)
+    return y + normalize(vec3(x - 0.25, x, 0.0)).x
+"""
+
+
+def test_chunks_at_a_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    library = library_of(tmp_path, CHUNKED)
+    x = np.linspace(-1.0, 1.0, 999, dtype=np.float32)
+    monkeypatch.setattr(permit, "CHUNK", 100)
+    found = []
+    for threads in (1, 3):
+        monkeypatch.setattr(permit, "THREADS", threads)
+        found.append(permitted(library, "probe", {"x": x}, "wgsl"))
+    one, three = found
+    assert one.causes == three.causes and len(one.causes) > 0
+    for name in ("low", "high", "codes"):
+        assert np.array_equal(getattr(one, name), getattr(three, name), equal_nan=True)
+
+
+WIDE = """def probe(x: X, y: X) -> vec3:
+    unknown = (x + 1.0) - 1.0
+    return normalize(vec3(unknown, unknown, y))
+"""
+
+
+@pytest.mark.parametrize("table", ["wgsl", "vulkan"])
+def test_normalised_components_end_at_one(tmp_path: Path, table: str) -> None:
+    y = np.array([1e-12, 1e-9], np.float32)
+    inputs = {"x": np.full(2, 1e-8, np.float32), "y": y}
+    found = permitted(library_of(tmp_path, WIDE), "probe", inputs, table)
+    assert found.guaranteed.all()
+    assert np.asarray(found.high).max() <= 1.0 + 2.0**-18
+    assert np.asarray(found.high)[:, 0].min() > 0.99, "a component may be all there is"
