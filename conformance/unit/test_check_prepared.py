@@ -8,6 +8,7 @@ Plan.
 
 from __future__ import annotations
 
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,20 @@ def test_prepared_values_are_those_of_direct_calls() -> None:
     assert not equal(ready.permitted("opencl").high, allowed.high)
     assert ready.permitted("glsl") is ready.permitted("glsl")
     assert ready.truth is ready.truth
+
+
+def test_costly_function_is_followed_in_part() -> None:
+    library = load_library()
+    name = next(n for n in library.public if fnmatchcase(n, prepared.COSTLY[0]))
+    ready = prepare(library, name, small(name)[:1])
+    found: Any = ready.permitted("wgsl")
+    followed: Any = permitted(library, name, ready.sample.inputs, "wgsl")
+    hull: Any = permitted(library, name, ready.sample.inputs, "wgsl", follow_forks=False)
+    some = np.arange(ready.sample.lanes) % prepared.FOLLOWED == 0
+    for wanted, lanes in ((followed, some), (hull, ~some)):
+        assert equal(found.low[lanes], wanted.low[lanes]) and equal(found.high[lanes], wanted.high[lanes])
+        assert equal(found.guaranteed[lanes], wanted.guaranteed[lanes])
+        assert all(found.cause(k) == wanted.cause(k) for k in np.flatnonzero(lanes))
 
 
 def test_printed_form_has_a_reference_of_its_own_or_none() -> None:
