@@ -63,7 +63,9 @@ class Options:
     @staticmethod
     def quick(functions: tuple[str, ...] = ()) -> Options:
         """Fewer rounds, fewer inputs, no promised figures."""
-        return Options(functions, QUICK, uniform=2_000, family=200, figures=0, seconds=95.0, leave_out=True)
+        return Options(
+            functions, QUICK, uniform=2_000, family=200, figures=0, seconds=95.0, leave_out=not functions
+        )
 
 
 def places(targets: Sequence[str], drivers: Sequence[str]) -> list[Place]:
