@@ -182,6 +182,7 @@ def _assemble(type_: Type, supply: Iterator[ir.Expr]) -> ir.Expr:
     """A value of the type from scalars in order."""
     if isinstance(type_, Scalar):
         return next(supply)
+    assert isinstance(type_, Struct | Vector), f"a {type_.name} is not made of scalars"
     parts = [f.type for f in type_.fields] if isinstance(type_, Struct) else [type_.element] * type_.size
     return ir.Construct(type_, tuple(_assemble(part, supply) for part in parts))
 
