@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.bounds import Bound
+from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.evaluate.arrays import arithmetic, convert_inputs
 from codegen.execute import Words, flatten
@@ -41,8 +42,14 @@ class Group:
 
 
 def groups(library: Library, names: Iterable[str] = ()) -> list[Group]:
-    """The groups of these functions, in the order named; every group that has variants if none is named."""
+    """The groups of these functions, in the order named; every group that has variants if none is named.
+
+    raises  UserError for a function that reads maps
+    """
     wanted = [library.function(name) for name in names] or [f for f in library.public.values() if f.base]
+    for f in wanted:
+        if f.reads_textures:
+            raise UserError(f"{f.name} reads maps, which no measurement of speed draws")
     roots = {root.name: root for root in (_root(library, f) for f in wanted)}
     return [Group(root, tuple(_descendants(library, root))) for root in roots.values()]
 

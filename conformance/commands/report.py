@@ -16,6 +16,7 @@ from codegen.costs import recorded
 from codegen.errors import UserError, unknown
 from codegen.library import Library, load_library
 from conformance.bench.emission import emission_figures
+from conformance.bench.inputs import groups
 from conformance.bench.record import rounded
 from conformance.bench.run import Options, measure, places
 from conformance.report.agreement import agreement
@@ -57,6 +58,7 @@ def command(
     """Measure the speed of every variant beside its error, and write report.html and report.json."""
     library = load_library()
     wanted = tuple(library.function(name).name for name in functions)
+    groups(library, wanted)  # refuses here what every worker would refuse
     for name in targets:
         if name not in TARGETS:
             raise unknown("target", name, TARGETS)
