@@ -203,9 +203,9 @@ def test_accuracy_is_measured_where_any_bound_holds(check: Check) -> None:
 
 
 def test_failures_of_several_bounds_come_in_the_order_of_the_worst(check: Check) -> None:
-    tight = BOUND.format("tight", "derived", "where = { x = [1, 1] }").replace("0.5", "0.125")
-    result = check(ALL + tight, [(0, 3, 0), (1, 2, 0)])
-    assert [f.identity.lane for f in result.failures] == [1, 0], "16 times its bound before 6 times"
+    share = BOUND.format("a share", "derived", "").replace("absolute", "relative").replace("0.5", "0.125")
+    result = check(ALL + share, [(0, 3, 1), (1, 120, 100)])
+    assert [f.identity.lane for f in result.failures] == [1, 0], "40 and 1.6 times its bounds before 4 and 16"
 
 
 def test_program_is_kept_with_failures_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
