@@ -1,7 +1,8 @@
 """Seeded inputs of a scene: random points of its ranges, and the cases that are known to be hard.
 
-Hard cases: directions 0 and 1e-7 to 1e-1 rad from +-t, both at once, near the cone of the highlight, at the
-edges of what [view] allows and at the horizon; ends of ranges, zeros and their neighbours.
+Hard cases: directions 0 and 1e-7 to 1e-1 rad from +-t, both at once, near the cone of the highlight, near
+each other and opposed, at the edges of what [view] allows and at the horizon; ends of ranges, zeros and their
+neighbours.
 """
 
 from __future__ import annotations
@@ -193,6 +194,10 @@ class _Drawing:
         result = np.where(near[:, None], _tilted(signs * hair, self.random, angles), result)
         viewer = self.known.get("v")
         if path == "l" and viewer is not None:
+            opposed = self.hard & (self.random.random(self.count) < 0.1)
+            signs = self.random.choice([-1.0, 1.0], self.count)[:, None]
+            angles = self.random.choice(ANGLES, self.count)
+            result = np.where(opposed[:, None], _tilted(signs * viewer, self.random, angles), result)
             cone = self.hard & ~near & (self.random.random(self.count) < 0.5)
             offset = 10.0 ** self.random.uniform(-7, -0.5, self.count) * self.random.choice(
                 [-1, 1], self.count

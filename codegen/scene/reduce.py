@@ -8,7 +8,7 @@ variants at call sites, looser forms of the geometry, numbers for terms that har
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Unit
@@ -26,7 +26,7 @@ from codegen.scene.lights import UNROLLED
 from codegen.scene.loosen import BUNDLES, SPLAT, loosened
 from codegen.scene.prices import Prices
 from codegen.scene.search import Found, Search
-from codegen.scene.sites import Path
+from codegen.scene.sites import Path, plainly_named
 
 SMALLEST_GAIN = 0.005
 """Share of the price that a form has to save to be worth its error."""
@@ -37,7 +37,8 @@ MOST_DROPS = 4
 class Change:
     """One approximation: what, why it is cheaper, and the predicted error of everything up to it.
 
-    kind  variant, power, form or term
+    kind   variant, power, form or term
+    brief  the same in few words, for the comment of the result
     """
 
     kind: str
@@ -46,6 +47,7 @@ class Change:
     error: float
     saving: str = ""
     refused: tuple[str, ...] = ()
+    brief: str = ""
 
 
 @dataclass(frozen=True)
@@ -96,7 +98,7 @@ class Reducer:
                 functions = self.search.functions(choices, f"{self.general.function.name}_chosen")
                 library, name = library.with_functions(functions), functions[-1].name
             known = self.knowledge
-            self._made[key] = specialise(
+            made = specialise(
                 library,
                 name,
                 known.constants,
@@ -107,6 +109,7 @@ class Reducer:
                 powers=powers,
                 unroll=UNROLLED,
             )
+            self._made[key] = replace(made, function=plainly_named(made.function))
         return self._made[key]
 
     def reduced(self, prices: Prices, budget: float) -> Reduced:
@@ -158,7 +161,8 @@ class Reducer:
             return 0
         steps = [step for step in made.log if step.name == "powers"]
         what = "; ".join(dict.fromkeys(step.what for step in steps))
-        changes.append(Change("power", what, "a constant whole exponent needs no logarithm", error.largest))
+        why = "a constant whole exponent needs no logarithm"
+        changes.append(Change("power", what, why, error.largest, brief="whole exponents as products"))
         return LARGEST
 
     def needed(self, choices: dict[Path, str], powers: int) -> dict[Path, str]:
@@ -268,6 +272,7 @@ def _variants(found: Found, choices: dict[Path, str], prices: Prices) -> Sequenc
             s.together,
             f"{s.saving:.3g} {prices.unit}, {prices.source}",
             s.refused,
+            s.new,
         )
         for s in found.steps
         if s.path in choices

@@ -6,12 +6,16 @@ calls of one function are two sites, since what is known of their arguments diff
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Interval
 from codegen.library import Library
+
+_COPY = re.compile(r"_at(_\d+)+")
+"""What marks copies of functions between the root and a chosen variant."""
 
 Path = tuple[int, ...]
 Choices = Mapping[Path, str]
@@ -207,3 +211,36 @@ def _with_calls(f: ir.Function, names: Mapping[int, str]) -> tuple[ir.Stmt, ...]
         return replace(e, function=names[number]) if number in names else e
 
     return ir.map_body(f.body, change)
+
+
+def plainly_named(f: ir.Function) -> ir.Function:
+    """The function with locals named after copies of functions named after the functions themselves."""
+    names = {s.name for s in ir.statements(f.body) if isinstance(s, ir.Let | ir.For)}
+    taken = names | {p.name for p in f.parameters}
+    new: dict[str, str] = {}
+    for name in sorted(names):
+        plain = _COPY.sub("", name)
+        if plain != name:
+            stem, k = plain, 1
+            while plain in taken:
+                k += 1
+                plain = f"{stem}_{k}"
+            taken.add(plain)
+            new[name] = plain
+
+    def rename(e: ir.Expr) -> ir.Expr:
+        return replace(e, name=new[e.name]) if isinstance(e, ir.Var) and e.name in new else e
+
+    def block(body: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
+        made: list[ir.Stmt] = []
+        for s in body:
+            if isinstance(s, ir.If):
+                s = replace(s, then=block(s.then), orelse=block(s.orelse))
+            elif isinstance(s, ir.For):
+                s = replace(s, body=block(s.body))
+            elif isinstance(s, ir.Let | ir.Assign) and s.name in new:
+                s = replace(s, name=new[s.name])
+            made.append(s)
+        return tuple(made)
+
+    return replace(f, body=block(ir.map_body(f.body, rename))) if new else f

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from codegen.backends import dialect
 from codegen.emit import wrap
+from codegen.emit.literal import shortest
 from codegen.emit.module import DEFAULT_PREFIX, emit_selection
 from codegen.ir import nodes as ir
-from codegen.ir.domains import number
+from codegen.ir.domains import Domain, Interval, number
 from codegen.library import VERSION, Library
 from codegen.scene.document import Scene
 from codegen.scene.general import General
@@ -37,19 +38,25 @@ def documented(scene: Scene, general: General, reduced: Reduced) -> ir.Function:
         )
     else:
         entries["error"] = f"none beside {source.name}: exact passes only"
-    entries["form"] = "; ".join(
-        [f"{source.name} for what the scene leaves open", *(c.what for c in reduced.changes)]
-    )
+    brief = dict.fromkeys(c.brief or c.what for c in reduced.changes)
+    entries["form"] = "; ".join([f"{source.name} for what the scene leaves open", *brief])
     if scene.facts:
         known = [f"{a}.{b} in [{number(low)}, {number(high)}]" for (a, b), (low, high) in scene.facts.items()]
         entries["degenerate"] = f"outside of {', '.join(known)} the value is not specified"
     entries["source"] = source.doc.entries.get("source", "")
     kept = {key: text for key, text in entries.items() if text}
-    summary = f'{source.doc.summary.rstrip(".")}; for the scene "{_plain(scene.name)}".'
+    summary = f'{source.name} for the scene "{_plain(scene.name)}", what it fixes folded in.'
     domains = {name: general.slots[name].domain for name in (p.name for p in general.function.parameters)}
     narrowed = {p.name: p.domain or domains.get(p.name) for p in f.parameters}
-    parameters = tuple(replace(p, domain=narrowed[p.name]) for p in f.parameters)
+    parameters = tuple(replace(p, domain=_readable(narrowed[p.name])) for p in f.parameters)
     return replace(f, parameters=parameters, doc=ir.Doc(summary, kept), kind="base", base=None)
+
+
+def _readable(domain: Domain | None) -> Domain | None:
+    """The domain with float32 ends written as briefly as they can be: 0.4 and not 0.400000006."""
+    if not isinstance(domain, Interval):
+        return domain
+    return replace(domain, low=float(shortest(domain.low)), high=float(shortest(domain.high)))
 
 
 def _lights(scene: Scene) -> str:

@@ -25,6 +25,7 @@ from codegen.cli import run
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.intervals import DEFAULT_TABLES, permitted
+from codegen.ir.verify import verify
 from codegen.library import load_library
 from codegen.maps.image import exr
 from codegen.passes.operations import operations
@@ -139,6 +140,7 @@ def test_a_budget_is_used_and_kept(tmp_path: Path) -> None:
             found = made.reduced(prices, budget)
             assert bool(found.changes) == (budget > 0.0)
             assert budget == 0.0 or found.error.fits(budget)
+            verify(found.final.function, lambda name: None)
             paid.append(prices.body(found.final.function))
         assert paid == sorted(paid, reverse=True)
         assert paid[-1] < 0.8 * paid[0]
