@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from codegen.errors import UserError, nearest
+from codegen.scene.document import BUDGETS
 from codegen.scene.tables import Table, is_number, read_tables, show
 from conformance.picture.brush import Brush
 from conformance.picture.visibility import Camera
 
 TABLES = ("scene", "shade", "parameters", "view", "lights", "render")
 TARGETS = ("glsl", "wgsl", "opencl")
-BUDGETS = ("half-step-8bit",)
 
 Triple = tuple[float, float, float]
 Value = float | tuple[float, ...]
