@@ -82,7 +82,12 @@ def variants_of(library: Library, f: ir.Function) -> list[str]:
     """Functions that may be called in this one's place: the base and its variants with equal parameters."""
     base = f.base if f.kind == "variant" and f.base else f.name
     module = library.resolver.module_of(base)
-    names = [n for n in library.resolver.function_names() if library.resolver.module_of(n) == module]
+    # Variants stand in their base's file or in one named after it: only these are parsed.
+    names = [
+        n
+        for n in library.resolver.function_names()
+        if (found := library.resolver.module_of(n)) == module or found.startswith(f"{module}_")
+    ]
     family = [library.function(n) for n in names]
     shape = [(p.name, p.type) for p in f.parameters]
     return [
