@@ -113,11 +113,25 @@ def loses_guarantees(library: Library, name: str, draws: list[Draw]) -> bool:
 
 
 def names_in(mutant: Mutant, subject: Subject) -> list[str]:
-    """The functions that a mutant changes: one, or all of the file for a constant."""
+    """The functions that a mutant changes: one, or those that mention a constant, or all of the file."""
     place = mutant.place.partition(".")[0]
     if place:
         return [place]
-    return [n.name for n in ast.parse(subject.text).body if isinstance(n, ast.FunctionDef)]
+    body = ast.parse(subject.text).body
+    assigned = {
+        part.id
+        for n in body
+        if not isinstance(n, ast.FunctionDef) and n.lineno <= mutant.line <= (n.end_lineno or n.lineno)
+        for part in ast.walk(n)
+        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+    }
+    functions = [n for n in body if isinstance(n, ast.FunctionDef)]
+    mentioning = [
+        f.name
+        for f in functions
+        if any(isinstance(part, ast.Name) and part.id in assigned for part in ast.walk(f))
+    ]
+    return mentioning or [f.name for f in functions]
 
 
 def judge(group: Group, subject: Subject, mutant: Mutant) -> str:
@@ -130,16 +144,16 @@ def judge(group: Group, subject: Subject, mutant: Mutant) -> str:
     except (SourceError, UserError, MalformedIRError):
         return REFUSED
     users = list(dict.fromkeys(user for name in changed for user in public_users(name, 50)))
+    own = [name for name in users if name in changed] or users[:1]
+    others = [name for name in users if name not in own]
     uniform, family, _ = group.first
-    if notices(library, users[:1], uniform, family):
+    if notices(library, own, uniform, family):
         return KILLED
     uniform, family, more = group.second
-    if notices(library, users[:1], uniform, family):
+    if notices(library, own, uniform, family):
         return KILLED
     uniform, family, _ = group.first
-    callers_notice = notices(library, users[1 : 1 + more], uniform, family)
-    if callers_notice or any(
-        loses_guarantees(library, name, points(name, uniform, family)) for name in users[:1]
-    ):
+    callers_notice = notices(library, others[:more], uniform, family)
+    if callers_notice or any(loses_guarantees(library, name, points(name, uniform, family)) for name in own):
         return KILLED
     return SURVIVED

@@ -15,6 +15,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -22,6 +23,7 @@ import pytest
 from conformance.mutation import python_rules, shader_rules
 from conformance.mutation.plan import PLANTED, excuses, groups, mutants_of, planted, tree_of
 from conformance.mutation.report import confidence
+from conformance.mutation.shaders import names_in
 from conformance.mutation.sites import Mutant, mutants, mutated
 
 ROOT = Path(__file__).parents[2]
@@ -141,6 +143,14 @@ def test_trials_tell_harmless_from_deadly(tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert json.loads(done.stdout.splitlines()[-1]) == {name: o for name, (_, o) in CHANGES.items()}
+
+
+def test_a_constant_is_tried_where_it_is_used() -> None:
+    functions = "def f(x: X) -> X:\n    return x + A\n\ndef g(x: X) -> X:\n    return x\n"
+    subject = SimpleNamespace(text=f"A = 1.0\nB = (\n    2.0\n)\n\n{functions}")
+    found = mutants("a.py", subject.text, shader_rules.rule)
+    tried = {m.before: names_in(m, subject) for m in found if not m.place}  # type: ignore[arg-type]
+    assert tried == {"1.0": ["f"], "2.0": ["f", "g"]}
 
 
 def test_confidence_of_a_sample() -> None:

@@ -14,6 +14,7 @@ Plan.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ import numpy as np
 import pytest
 
 from codegen.evaluate import evaluate
-from codegen.intervals import numbers, permit, permitted, whole
+from codegen.intervals import load_table, numbers, permit, permitted, whole
 from codegen.intervals.values import Whole
 from conformance.unit.support.sources import library_of
 
@@ -113,6 +114,21 @@ def test_denormals_may_be_read_as_zero(tmp_path: Path) -> None:
     found: Any = permitted(library, "probe", {"a": np.array([1e-40, 1.0, 0.0], np.float32)}, "wgsl")
     assert found.low.tolist() == [1.0, 1.0, 2.0]
     assert found.high.tolist() == [2.0, 1.0, 2.0]
+
+
+def test_results_below_the_normal_numbers_lie_on_their_grid(tmp_path: Path) -> None:
+    """Where a table keeps them; their spacing is 2^-149."""
+    library = library_of(tmp_path, "def probe(x: X, y: X) -> f32:\n    return x * y\n")
+    inputs = {
+        "x": np.geomspace(1e-25, 1e-20, 200, dtype=np.float32),
+        "y": np.geomspace(3e-20, 1e-19, 200, dtype=np.float32),
+    }
+    found = permitted(library, "probe", inputs, replace(load_table("opencl"), flush=False))
+    exact = inputs["x"].astype(np.float64) * inputs["y"]
+    for end in (np.asarray(found.low, np.float64), np.asarray(found.high, np.float64)):
+        assert np.array_equal(np.round(end * 2.0**149), end * 2.0**149)
+        assert (np.abs(end - exact) <= 2.0**-149).all()
+    assert found.contains(inputs["x"] * inputs["y"]).all()
 
 
 def test_forks_are_followed(tmp_path: Path) -> None:
