@@ -13,6 +13,8 @@ Recorded = Mapping[str, Mapping[str, Any]]
 
 FORMAT = 2
 """Of the recorded files."""
+BAR = "\\|"
+"""A bar inside a cell of a table."""
 JUDGED = "judged"
 STAGES = ("emit", "compile", "execute", JUDGED)
 """How far a function comes: the stage where it stopped, or judged."""
@@ -109,7 +111,7 @@ def _failures(recorded: Recorded) -> list[str]:
             for verdict, why in _failed(f):
                 known = f.get("known", {}).get(verdict, "not a known failure")
                 cells = (function, stem, name, verdict, why, known)
-                rows.append(f"| {' | '.join(cells)} |".replace("\n", " "))
+                rows.append(f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |".replace("\n", " "))
     if not rows:
         return ["None: every verdict is good on every driver and in every mode."]
     heads = ("function", "results", "mode", "not", "how far", "reason")
