@@ -89,10 +89,14 @@ class Reference:
         few = Points(first(points.inputs, SCREEN), min(SCREEN, points.count), points.hard[:SCREEN])
         return Reference(few, self.exact[:SCREEN], self.single[:SCREEN])
 
-    def error(self, library: Library, name: str) -> Measured:
-        """How far another function of some of the parameters is, evaluated in float32."""
+    def values(self, library: Library, name: str) -> Floats:
+        """The values of another function of some of the parameters, evaluated in float32."""
         given = {p.name: self.points.inputs[p.name] for p in library.function(name).parameters}
-        return distance(as_floats(evaluate(library, name, given, "float32")), self.exact, self.single)
+        return as_floats(evaluate(library, name, given, "float32"))
+
+    def error(self, library: Library, name: str) -> Measured:
+        """How far another function is."""
+        return distance(self.values(library, name), self.exact, self.single)
 
 
 def first(inputs: Inputs, count: int) -> Inputs:

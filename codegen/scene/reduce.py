@@ -31,6 +31,8 @@ from codegen.scene.sites import Path, plainly_named
 SMALLEST_GAIN = 0.005
 """Share of the price that a form has to save to be worth its error."""
 MOST_DROPS = 4
+WITNESSES = 50
+"""Points that have to see the loss of a term: what hardly any point reaches is not judged by points."""
 
 
 @dataclass(frozen=True)
@@ -225,12 +227,20 @@ class Reducer:
             if gain <= SMALLEST_GAIN * price or (best is not None and gain <= best[0]):
                 continue
             error = self.fits(candidate, budget)
-            if error is None:
+            if error is None or self.witnesses(made, candidate) < WITNESSES:
                 continue
             what = f"{_shown(made.function, term.expression)} -> {show(term.replacement)}"
             why = f"it stays within [{term.low:.3g}, {term.high:.3g}]; {_fewer(made, candidate)}"
             best = gain, candidate, Change("term", what, why, error.largest)
         return None if best is None else (best[1], best[2])
+
+    def witnesses(self, one: Specialised, other: Specialised) -> int:
+        """How many points tell two functions apart."""
+        first, second = (
+            self.reference.values(self.library.with_functions([made.function]), made.function.name)
+            for made in (one, other)
+        )
+        return int((first != second).any(axis=1).sum())
 
     def cleaned(self, function: ir.Function) -> Specialised:
         """A changed function run through the exact passes again."""
