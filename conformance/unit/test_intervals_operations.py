@@ -192,6 +192,22 @@ def test_integers(op: str) -> None:
             assert ((wide.low <= exact) & (exact <= wide.high)).all()
 
 
+def test_hulls_of_integers_end_where_their_corners_do() -> None:
+    """Without wrapping; where a result may wrap, the hull is every integer."""
+    rng = np.random.default_rng(SEED)
+    a, b = rng.integers(200, 1000, 300), rng.integers(1, 90, 300)
+    ends = {
+        "+": (a + b, a + b + 14),
+        "-": (a - b - 7, a + 7 - b),
+        "*": (a * b, (a + 7) * (b + 7)),
+        "//": (a // (b + 7), (a + 7) // b),
+    }
+    for op, (low, high) in ends.items():
+        wide = whole.binary(op, Whole(a, a + 7, False), Whole(b, b + 7, False))
+        assert np.array_equal(wide.low, low), op
+        assert np.array_equal(wide.high, high), op
+
+
 def point_of(a: Any) -> Whole:
     return Whole(a, a, False)
 
