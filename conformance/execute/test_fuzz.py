@@ -12,7 +12,7 @@ Known benign differences are kept out by the generator: see conformance/fuzz/exp
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,7 @@ from conformance.fuzz.task import COUNTS, ENDED, TASK, pieces, run_jobs
 from conformance.fuzz.unparse import functions_text
 from conformance.programs import judge
 from targets import TARGETS, Runtime, TargetUnavailable, open_runtime, probe
+from targets.textures import TextureData
 
 SEED = 1
 COUNT, PARTS = 1_000, 4
@@ -157,7 +158,7 @@ class BadDevice:
     def __init__(self, device: Any) -> None:
         self.device = device
 
-    def run(self, program: str, words: Words, slots_out: int) -> Words:
+    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()) -> Words:
         return np.full((slots_out, words.shape[1]), 0x40000000, np.uint32)
 
 

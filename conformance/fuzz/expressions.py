@@ -68,6 +68,7 @@ class Expressions:
             return call(
                 type_.name, *(self.leaf(type_.element) for _ in range(self.choice.choice((1, type_.size))))
             )
+        assert isinstance(type_, Scalar), "random programs read no maps"
         return self.literal(type_)
 
     def literal(self, type_: Scalar) -> ast.expr:

@@ -15,7 +15,7 @@ from codegen.emit.stmt import StmtPrinter
 from codegen.evaluate.arrays import Value, arithmetic, broadcast, convert_inputs
 from codegen.execute import Runtime, Words, flatten, unflatten
 from codegen.ir import nodes as ir
-from codegen.ir.types import I32, Scalar, Struct, Type, leaves
+from codegen.ir.types import I32, Scalar, Struct, Type, Vector, leaves
 from codegen.ir.unit import Unit
 from codegen.library import Library
 from codegen.passes.rename import add_prefix
@@ -50,6 +50,7 @@ def body(library: Library, names: Sequence[str], chosen: Dialect) -> list[str]:
         if isinstance(type_, Scalar):
             slot_in += 1
             return ir.Call(type_, f"load_{type_.name}", (ir.Const(I32, slot_in - 1),))
+        assert isinstance(type_, Struct | Vector), "random programs read no maps"
         parts = [f.type for f in type_.fields] if isinstance(type_, Struct) else [type_.element] * type_.size
         return ir.Construct(type_, tuple(load(part) for part in parts))
 
