@@ -50,29 +50,38 @@ class Speed:
 
 
 def measure(
-    library: Library, names: Sequence[str], runtime: Any, inputs: Mapping[str, Value], rounds: int = ROUNDS
+    library: Library,
+    names: Sequence[str],
+    runtime: Any,
+    inputs: Mapping[str, Value],
+    rounds: int = ROUNDS,
+    *,
+    texts: Mapping[str, str] | None = None,
 ) -> dict[str, Speed]:
     """The speeds of functions that take float inputs only, side by side.
 
     inputs  values for every parameter that one of them has, by name; no hard cases: a number below 2^-126
             takes a CPU a hundred times as long as others and would hide everything else
+    texts   text in the target's language that defines a function, with the usual prefix, where it is not
+            the emitted one
     """
     target = runtime.device.target
     looped = target != "opencl"  # a loop keeps OpenCL compilers from working on several items at once
     lanes = LANES if looped else FLAT_LANES
-    texts, given, built = {}, {}, {}
+    programs, given, built = {}, {}, {}
     for name in names:
         f = library.function(name)
         words = _words(f, inputs, lanes)
-        for key, text in ((name, _kernel(library, f, target, looped, True)), (f"{name}:", "")):
-            texts[key] = text or _kernel(library, f, target, looped, False)
+        written = (texts or {}).get(name) or emit(library, dialect(target), [name])
+        for key, text in ((name, written), (f"{name}:", "")):
+            programs[key] = _kernel(f, target, looped, text)
             given[key] = words
     for name in names:
         begin = time.perf_counter()
-        runtime.prepare(texts[name], _with_steps(given[name], 1), 1).release()
+        runtime.prepare(programs[name], _with_steps(given[name], 1), 1).release()
         built[name] = time.perf_counter() - begin
-    steps = _steps(runtime, texts[names[0]], given[names[0]]) if looped else 1
-    ready = {key: runtime.prepare(texts[key], _with_steps(given[key], steps), 1) for key in texts}
+    steps = _steps(runtime, programs[names[0]], given[names[0]]) if looped else 1
+    ready = {key: runtime.prepare(programs[key], _with_steps(given[key], steps), 1) for key in programs}
     try:
         clock = _working_clock(ready[names[0]]) if _is_software(runtime) else time.perf_counter
         times = _rounds(ready, clock, rounds)
@@ -171,7 +180,8 @@ def _with_steps(words: Words, steps: int) -> Words:
     return np.concatenate([words, controls])
 
 
-def _kernel(library: Library, f: ir.Function, target: str, looped: bool, call: bool) -> str:
+def _kernel(f: ir.Function, target: str, looped: bool, text: str) -> str:
+    """The program around a function's text; without text, the sum of the inputs in the call's place."""
     chosen = dialect(target)
     printer = StmtPrinter(chosen)
     scalars = [s for p in f.parameters for _, s in leaves(p.type)]
@@ -181,7 +191,7 @@ def _kernel(library: Library, f: ir.Function, target: str, looped: bool, call: b
     start += [ir.Let(s, ir.Const(F32, 0.125 * c), mutable=True) for c, s in enumerate(sums)]
     step: list[ir.Stmt] = []
     for c, name in enumerate(sums):
-        step += _evaluation(f, c, name, call)
+        step += _evaluation(f, c, name, bool(text))
     lines = printer.block(tuple(start), "    ")
     if looped:
         counter = "var step_index" if chosen.declaration == "name: type" else "int step_index"
@@ -191,7 +201,6 @@ def _kernel(library: Library, f: ir.Function, target: str, looped: bool, call: b
         lines += printer.block(tuple(step), "    ")
     total = _sum([ir.Var(F32, s) for s in sums])
     lines.append(f"    store_f32(0, {printer.expr.show(total)});")
-    text = emit(library, chosen, [f.name]) if call else ""
     return complete_program(target, text, "\n".join(lines))
 
 
