@@ -34,6 +34,8 @@ from codegen.scene.stopwatch import Speed
 
 SEARCH_POINTS = 20_000
 PROOF_POINTS = 100_000
+UNEXECUTED_POINTS = 20_000
+"""Points of a proof by float32 evaluation alone, where no driver is there to execute it."""
 ENVIRONMENT_POINTS = 24
 LEAST_SHARE = 0.3
 """Share of the budget below which a search that fails its proof is not tried again."""
@@ -119,7 +121,8 @@ class Builder:
             raise UserError(
                 f"{self.scene.path}: nothing varies: the scene is one colour and needs no function"
             )
-        proven = draw(self.scene, general, PROOF_POINTS, SEED + 1)
+        executed = any(not isinstance(runtime, str) for runtime in self.runtimes.values())
+        proven = draw(self.scene, general, PROOF_POINTS if executed else UNEXECUTED_POINTS, SEED + 1)
         exact = as_floats(evaluate(library, general.function.name, proven.inputs, "float64"))
         results = [self.proven(library, general, reducer, r, proven, exact) for r in reduced.values()]
         error = None

@@ -159,9 +159,10 @@ def _proofs(data: dict[str, Any]) -> list[str]:
             f"| {exact['different_bits']} differ in a bit; {exact['outside_intervals']} of "
             f"{exact['judged_by_intervals']} judged lie outside |"
         )
+    how = "Executed" if any(t["executed"] for t in data["targets"]) else "Evaluated in float32, not executed,"
     notes = [
         "",
-        f"Executed over {data['proof_points']} points, {data['hard_points']} of them hard, before anything "
+        f"{how} over {data['proof_points']} points, {data['hard_points']} of them hard, before anything "
         "was written. Errors are absolute, of the largest component, against the general function in float64 "
         "or on the same driver, whichever is nearer; the maxima are the largest found. Exact passes: results "
         "that differ from the general function's on that driver are held against what its specification "

@@ -38,6 +38,10 @@ Floats = npt.NDArray[np.float64]
 Inputs = dict[str, Value]
 
 
+LEAST_ROUND = 256
+"""Points that a further round draws, at least, where facts left some of the first out."""
+
+
 @dataclass(frozen=True)
 class Points:
     """Inputs of the general function by parameter, each with `count` lanes; `hard` marks the hard ones."""
@@ -53,8 +57,9 @@ def draw(scene: Scene, general: General, count: int, seed: int = SEED) -> Points
     parts: list[tuple[Inputs, npt.NDArray[np.bool_]]] = []
     found = 0
     for attempt in range(ROUNDS):
-        hard = generator.random(count) < HARD_SHARE
-        inputs = _Drawing(scene, general, generator, count, hard).inputs()
+        size = min(count, 2 * (count - found) + LEAST_ROUND)
+        hard = generator.random(size) < HARD_SHARE
+        inputs = _Drawing(scene, general, generator, size, hard).inputs()
         keep = np.flatnonzero(_fits(scene, general, inputs))[: count - found]
         parts.append(({name: np.asarray(v)[keep] for name, v in inputs.items()}, hard[keep]))
         found += len(keep)
