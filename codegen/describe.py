@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
 from codegen.costs import costs
 from codegen.guarantees import Guarantee, guarantees, phrase
 from codegen.half import HalfForm, half_forms
-from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain
 from codegen.ir.nodes import Function
 from codegen.library import Library
-from codegen.ops import BUILTINS, OPERATORS
+from codegen.passes.operations import operations_by_cost
 
 
 def signature(f: Function) -> str:
@@ -72,45 +70,6 @@ def _guaranteed(library: Library, f: Function) -> Mapping[str, Guarantee]:
     return {} if found is None else found.tables
 
 
-def operations(library: Library, f: Function) -> dict[str, int]:
-    """How many scalar operations of each cost class one evaluation writes down, calls included.
-
-    Both sides of conditionals count; loop bodies count once per iteration. Speed is measured, not derived
-    from this.
-    """
-    counts: Counter[str] = Counter()
-
-    def width(e: ir.Expr) -> int:
-        sizes = [getattr(t, "size", 1) for t in (e.type, *(c.type for c in ir.children(e)))]
-        return max(sizes)
-
-    def expression(root: ir.Expr, times: int) -> None:
-        for e in ir.walk(root):
-            if isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
-                op = BUILTINS[e.op] if isinstance(e, ir.Builtin) else OPERATORS[e.op]
-                for cost, n in op.operations(width(e)).items():
-                    counts[cost] += times * n
-            elif isinstance(e, ir.Call):
-                for cost, n in operations(library, library.function(e.function)).items():
-                    counts[cost] += times * n
-
-    def block(body: tuple[ir.Stmt, ...], times: int) -> None:
-        for s in body:
-            match s:
-                case ir.If():
-                    expression(s.condition, times)
-                    block(s.then, times)
-                    block(s.orelse, times)
-                case ir.For():
-                    block(s.body, times * max(s.stop - s.start, 0))
-                case _:
-                    expression(s.value, times)
-
-    block(f.body, 1)
-    counts.pop("free", None)
-    return dict(sorted(counts.items()))
-
-
 def as_data(library: Library, f: Function) -> dict[str, Any]:
     """The same as plain data, for `vair list --json`."""
     return {
@@ -142,6 +101,6 @@ def as_data(library: Library, f: Function) -> dict[str, Any]:
         ],
         "guaranteed": {t: found.as_data() for t, found in _guaranteed(library, f).items()},
         "half": forms[f.name].as_data() if f.name in (forms := half_forms(library)) else None,
-        "operations": operations(library, f),
+        "operations": operations_by_cost(f, library),
         "cost": costs(library, f),
     }

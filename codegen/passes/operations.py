@@ -9,6 +9,7 @@ compare     comparisons
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Mapping
 
 from codegen.ir import nodes as ir
 from codegen.ir.types import Vector
@@ -28,15 +29,31 @@ def operations(function: ir.Function, library: Library | None = None) -> dict[st
     Both sides of branches count, and loop bodies once per iteration. What the function calls counts where a
     library is given to look it up.
     """
-    counts: Counter[str] = Counter(dict.fromkeys(CLASSES, 0))
+    return {**dict.fromkeys(CLASSES, 0), **_counted(function, library, expression_operations)}
+
+
+def operations_by_cost(function: ir.Function, library: Library) -> dict[str, int]:
+    """Scalar operations of one evaluation, calls included, by cost class (codegen.ops.op.COSTS).
+
+    Branches and loops count as in `operations`; classes without an operation are left out.
+    """
+    counts = _counted(function, library, _registered_operations)
+    return {cost: n for cost, n in sorted(counts.items()) if cost != "free"}
+
+
+def _counted(
+    function: ir.Function, library: Library | None, of: Callable[[ir.Expr], Mapping[str, int]]
+) -> Counter[str]:
+    """The sum of what `of` says of every node, each as often as one evaluation meets it."""
+    counts: Counter[str] = Counter()
 
     def tree(e: ir.Expr, times: int) -> None:
         for x in ir.walk(e):
-            for kind, n in expression_operations(x).items():
-                counts[kind] += n * times
+            found = of(x)
             if isinstance(x, ir.Call) and library is not None:
-                for kind, n in operations(library.function(x.function), library).items():
-                    counts[kind] += n * times
+                found = _counted(library.function(x.function), library, of)
+            for kind, n in found.items():
+                counts[kind] += n * times
 
     def block(body: tuple[ir.Stmt, ...], times: int) -> None:
         for s in body:
@@ -51,23 +68,32 @@ def operations(function: ir.Function, library: Library | None = None) -> dict[st
                     tree(s.value, times)
 
     block(function.body, 1)
-    return dict(counts)
+    return counts
 
 
 def expression_operations(e: ir.Expr) -> dict[str, int]:
     """Operations by class of one node, its operands left out."""
-    size = max(t.size if isinstance(t, Vector) else 1 for t in (e.type, *(c.type for c in ir.children(e))))
     if isinstance(e, ir.Select):
         return {"select": e.type.size if isinstance(e.type, Vector) else 1}
     if isinstance(e, ir.Binary) and e.op in _COMPARISONS:
         return {"compare": 1}
     if isinstance(e, ir.Builtin) and e.op == "clamp":
-        return {"arithmetic": 2 * size}
-    if not isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
-        return {}
-    row = BUILTINS[e.op] if isinstance(e, ir.Builtin) else OPERATORS[e.op]
+        return {"arithmetic": 2 * _width(e)}
     found: Counter[str] = Counter()
-    for cost, n in row.operations(size).items():
+    for cost, n in _registered_operations(e).items():
         if cost != "free":
             found["arithmetic" if cost in _ARITHMETIC else "special"] += n
     return dict(found)
+
+
+def _registered_operations(e: ir.Expr) -> Mapping[str, int]:
+    """Scalar operations of one node by the registry's cost classes; none for what has no row there."""
+    if not isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
+        return {}
+    row = BUILTINS[e.op] if isinstance(e, ir.Builtin) else OPERATORS[e.op]
+    return row.operations(_width(e))
+
+
+def _width(e: ir.Expr) -> int:
+    """Components of the widest of the node and its operands."""
+    return max(t.size if isinstance(t, Vector) else 1 for t in (e.type, *(c.type for c in ir.children(e))))

@@ -13,9 +13,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from codegen.describe import operations
 from codegen.ir.nodes import Function
 from codegen.library import VERSION, Library
+from codegen.passes.operations import operations_by_cost
 from conformance.bench.accuracy import Error
 from conformance.bench.kernels import THROUGHPUT
 from conformance.bench.ratios import Spread
@@ -85,7 +85,7 @@ def function_data(library: Library, f: Function, base: str) -> dict[str, Any]:
         "base": base,
         "kind": "peer" if f.name in PEERS else f.kind,
         "source_hash": library.select([f.name]).source_hash,
-        "operations": operations(library, f),
+        "operations": operations_by_cost(f, library),
     }
 
 
