@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from codegen.maps import latlong
+
 Array = npt.NDArray[np.float64]
 
 
@@ -25,6 +27,17 @@ def chain(level: npt.ArrayLike, weights: npt.ArrayLike | None = None, least: int
         values, weight = _halved(values, weight)
         levels.append(values)
     return levels
+
+
+def by_solid_angle(pixels: npt.NDArray[np.floating]) -> list[Array]:
+    """The chain of a latitude-longitude map: each texel the mean over the part of the sphere it covers."""
+    rows = latlong.solid_angles(*pixels.shape[:2])
+    return chain(pixels, np.broadcast_to(rows[:, None], pixels.shape[:2]))
+
+
+def reduced(pixels: npt.NDArray[np.floating], rows: int) -> Array:
+    """The largest level of that chain with at most so many rows."""
+    return next(level for level in by_solid_angle(pixels) if level.shape[0] <= max(rows, 1))
 
 
 def _halved(values: Array, weight: Array) -> tuple[Array, Array]:

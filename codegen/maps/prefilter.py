@@ -91,9 +91,7 @@ def _reduced(pixels: npt.NDArray[np.floating], exponent: float) -> npt.NDArray[n
     wanted = TEXELS_ACROSS * np.pi * np.sqrt(max(exponent, 4.0))
     if height // 2 < wanted:
         return pixels
-    rows = latlong.solid_angles(*pixels.shape[:2])
-    weights = np.broadcast_to(rows[:, None], pixels.shape[:2])
-    fitting = [level for level in mipmap.chain(pixels, weights) if level.shape[0] >= wanted]
+    fitting = [level for level in mipmap.by_solid_angle(pixels) if level.shape[0] >= wanted]
     return fitting[-1]
 
 

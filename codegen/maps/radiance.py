@@ -5,9 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from codegen.errors import UserError
 from codegen.maps.image import Pixels, read_pixels
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+"""Share of linear red, green and blue (ITU-R BT.709) in luminance."""
 
 
 def read_radiance(path: Path, *, clean: bool = False) -> Pixels:
@@ -25,13 +29,18 @@ def read_radiance(path: Path, *, clean: bool = False) -> Pixels:
         return pixels
     if clean:
         return cleaned(pixels)
+    raise UserError(f'{path.name}: {first_wrong(pixels, wrong)}; "clean" mends them')
+
+
+def first_wrong(pixels: Pixels, wrong: npt.NDArray[np.bool_]) -> str:
+    """How many pixels have a wrong value, and the first of these values with its place."""
     places = wrong.any(axis=2)
     row, column = (int(k) for k in np.argwhere(places)[0])
     channel = int(np.flatnonzero(wrong[row, column])[0])
     count = int(places.sum())
-    raise UserError(
-        f"{path.name}: {count} pixel{'s are' if count > 1 else ' is'} no radiance, first row {row}, "
-        f'column {column}: {"RGB"[channel]} = {pixels[row, column, channel]:g}; "clean" mends them'
+    return (
+        f"{count} pixel{'s are' if count > 1 else ' is'} no radiance, first row {row}, column {column}: "
+        f"{'RGB'[channel]} = {pixels[row, column, channel]:g}"
     )
 
 

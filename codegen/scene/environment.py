@@ -17,13 +17,13 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.errors import UserError
-from codegen.maps import latlong
+from codegen.maps import latlong, mipmap
 from codegen.maps.image import read_pixels
+from codegen.maps.radiance import LUMINANCE, cleaned, first_wrong
 
 Floats = npt.NDArray[np.float64]
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
-COARSE = (64, 128)
-"""Rows and columns of the map that direct integration uses."""
+COARSE = 64
+"""Rows of the map that direct integration uses, at most."""
 
 
 @dataclass(frozen=True)
@@ -48,18 +48,20 @@ def read_map(path: Path, shown: str) -> Floats:
     shown  what stands before the sentence: file and key
     """
     try:
-        rgb = np.asarray(read_pixels(path, linear=True), np.float64)
+        pixels = read_pixels(path, linear=True)
     except UserError as e:
         raise UserError(f"{shown}: {e}") from None
-    height, width = rgb.shape[:2]
+    height, width = pixels.shape[:2]
     if width != 2 * height:
         raise UserError(
             f'{shown}: "{path.name}" is {width} x {height}; a map in latitude and longitude is twice as '
             "wide as high"
         )
-    if not np.isfinite(rgb).all():
-        raise UserError(f'{shown}: "{path.name}" holds a value that is not finite')
-    rgb = np.maximum(rgb, 0.0)  # lossy compression leaves small negative numbers beside bright ones
+    endless = ~np.isfinite(pixels)
+    if endless.any():
+        raise UserError(f'{shown}: "{path.name}": {first_wrong(pixels, endless)}')
+    # Negative values are mended unasked: lossy compression leaves small ones beside bright texels.
+    rgb = np.asarray(cleaned(pixels), np.float64)
     if not rgb.any():
         raise UserError(f'{shown}: "{path.name}" is black: no light comes from it')
     return rgb
@@ -128,19 +130,6 @@ def _halves(energy: Floats, region: Region) -> list[Region] | None:
     return [(top, top + cut, left, right), (top + cut, bottom, left, right)]
 
 
-def coarser(rgb: Floats, rows: int = COARSE[0]) -> Floats:
-    """The map with at most this many rows, by means over solid angle within blocks of whole texels."""
-    height = rgb.shape[0]
-    factor = max(height // rows, 1)
-    if factor == 1 or height % factor:
-        return rgb
-    weight = np.sin(math.pi * (np.arange(height) + 0.5) / height)[:, None, None]
-    shape = (height // factor, factor, rgb.shape[1] // factor, factor, 3)
-    total = (rgb * weight).reshape(shape).sum(axis=(1, 3))
-    sums = np.broadcast_to(weight, rgb.shape).reshape(shape).sum(axis=(1, 3))
-    return np.asarray(total / sums)
-
-
 @dataclass(frozen=True)
 class MapError:
     """How far the constant lights are from direct integration over the map, relative to the mean radiance."""
@@ -163,7 +152,7 @@ def measured_error(
     shade   (directions (N, 3), colours (N, 3), point) -> radiance (N, 3) of each light at one point
     points  number of points
     """
-    everything = texels(coarser(rgb))
+    everything = texels(mipmap.reduced(rgb, COARSE))
     few = Texels(
         np.array([light.direction for light in lights]), np.array([light.colour for light in lights])
     )

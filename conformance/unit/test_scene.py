@@ -229,7 +229,7 @@ MAPS = {
     "broken.exr": (b"nothing", "cannot read"),
     "square.exr": (np.ones((4, 4, 3)), "is 4 x 4; a map in latitude and longitude is twice as wide as high"),
     "black.exr": (np.zeros((4, 8, 3)), "is black: no light comes from it"),
-    "hole.exr": (np.full((4, 8, 3), np.nan), "holds a value that is not finite"),
+    "hole.exr": (np.full((4, 8, 3), np.nan), "32 pixels are no radiance, first row 0, column 0: R = nan"),
 }
 
 
