@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.maps import latlong, mipmap, paraboloid
-from codegen.maps.radiance import read_radiance
+from codegen.maps.radiance import LUMINANCE, read_radiance
+from conformance.reference.maps import dual_paraboloid_solid_angle, dual_paraboloid_uv
 
 Array = npt.NDArray[np.float64]
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 class Environment:
@@ -44,12 +44,12 @@ class Environment:
 
     def texel_solid_angle(self, z: Array) -> Array:
         """Solid angle of a texel of the largest level where it shows the direction w, z = w.z."""
-        return 4.0 * self.border**2 * (1.0 + np.abs(z)) ** 2 / self.size**2
+        return dual_paraboloid_solid_angle(z, self.size, self.size, self.border)
 
     def radiance(self, w: Array, lod: npt.ArrayLike = 0.0) -> Array:
         """Trilinear lookups of directions (..., 3) at levels of detail (...), (..., 3)."""
-        uv = w[..., :2] / (1.0 + np.abs(w[..., 2:])) / self.border * 0.5 + 0.5
-        face = (w[..., 2] < 0.0).astype(np.int64)
+        place = dual_paraboloid_uv(w, self.border)
+        uv, face = place["uv"], place["back"].astype(np.int64)
         lods = np.broadcast_to(np.clip(lod, 0.0, len(self.levels) - 1.0), face.shape)
         lower = np.minimum(np.floor(lods), max(len(self.levels) - 2, 0)).astype(np.int64)
         upper_share = (lods - lower)[..., None]

@@ -14,12 +14,12 @@ import numpy.typing as npt
 from codegen.maps import latlong, mipmap
 from conformance.light.environment import Environment, MapSampler
 from conformance.light.lobes import Lobe, View
+from conformance.reference.maps import lod_from_pdf, mis_balance, mis_power
 from conformance.reference.sampling import hammersley
 
 Array = npt.NDArray[np.float64]
 Estimator = Callable[[Environment, View, Lobe, Array], Array]
 
-LEAST = 1e-30
 SHARP = 0.5
 """Level of detail at the peak below which filtering is left out: samples then lie closer than half a texel's
 blur, and what filtering adds is error (measured: exponent 1000, 40 samples)."""
@@ -44,10 +44,7 @@ def grid(environment: Environment, view: View, lobe: Lobe, rows: int, *, weighte
 
     weighted  False leaves the solid angles out, as the lecture does: every direction counts alike
     """
-    height, width = environment.pixels.shape[:2]
-    weights = np.broadcast_to(latlong.solid_angles(height, width)[:, None], (height, width))
-    levels = mipmap.chain(environment.pixels, weights)
-    image = next(level for level in levels if level.shape[0] <= rows)
+    image = mipmap.reduced(environment.pixels, rows)
     directions = latlong.directions(*image.shape[:2]).reshape(-1, 3)
     angles = np.repeat(latlong.solid_angles(*image.shape[:2]), image.shape[1])
     if not weighted:
@@ -65,14 +62,14 @@ def plain(environment: Environment, view: View, lobe: Lobe, u: Array) -> Array:
 def filtered(environment: Environment, view: View, lobe: Lobe, u: Array, bias: float = 0.0) -> Array:
     """Colbert and Krivanek 2007: each sample looks up the level whose texel is as large as its share."""
     world, pdf, weight = _samples(view, lobe, u)
-    lod = _level(environment, len(u) * pdf, world[..., 2], bias)
+    lod = lod_from_pdf(pdf, len(u), environment.texel_solid_angle(world[..., 2]), bias)
     return np.asarray((environment.radiance(world, lod) * weight[..., None]).mean(axis=1))
 
 
 def guarded(environment: Environment, view: View, lobe: Lobe, u: Array) -> Array:
     """Filtered, but plain where the densest sample would look up less than level SHARP."""
     world, pdf, weight = _samples(view, lobe, u)
-    lod = _level(environment, len(u) * pdf, world[..., 2], 0.0)
+    lod = lod_from_pdf(pdf, len(u), environment.texel_solid_angle(world[..., 2]), 0.0)
     lod = np.where(lod.min(axis=1, keepdims=True) < SHARP, 0.0, lod)
     return np.asarray((environment.radiance(world, lod) * weight[..., None]).mean(axis=1))
 
@@ -84,27 +81,19 @@ def combined(
 
     The map's samples are the same for every view, so an engine can bake them.
     """
-    count = len(u) // 2
-    half = sequence(max(count, 1))
-    world, pdf, weight = _samples(view, lobe, half)
-    share = _share(pdf, sampler.pdf(world), power)
+    ours = max(len(u) // 2, 1)
+    theirs = max(len(u) - ours, 1)
+    share_of = mis_power if power else mis_balance
+    world, pdf, weight = _samples(view, lobe, sequence(ours))
+    share = share_of(ours, pdf, theirs, sampler.pdf(world))
     total = (environment.radiance(world) * (weight * share)[..., None]).mean(axis=1)
-    others = sampler.sample(sequence(max(len(u) - count, 1)))
+    others = sampler.sample(sequence(theirs))
     local = np.stack([view.to_local(k, others) for k in range(len(view))])
     density = np.broadcast_to(sampler.pdf(others), local.shape[:2])
     value = lobe.value(local, view.v[:, None, :])
-    share = _share(density, lobe.pdf(local, view.v[:, None, :]), power)
+    share = share_of(theirs, density, ours, lobe.pdf(local, view.v[:, None, :]))
     mine = np.where(density > 0.0, value * share / np.where(density > 0.0, density, 1.0), 0.0)
     return np.asarray(total + (environment.radiance(others)[None] * mine[..., None]).mean(axis=1))
-
-
-def _share(own: Array, other: Array, power: bool) -> Array:
-    """The weight of a sample whose own density is the first, for as many samples of either kind."""
-    larger = np.maximum(own, other)
-    a, b = own / np.where(larger > 0.0, larger, 1.0), other / np.where(larger > 0.0, larger, 1.0)
-    if power:
-        a, b = a * a, b * b
-    return np.asarray(np.where(larger > 0.0, a / np.where(a + b > 0.0, a + b, 1.0), 0.0))
 
 
 def _samples(view: View, lobe: Lobe, u: Array) -> tuple[Array, Array, Array]:
@@ -113,11 +102,6 @@ def _samples(view: View, lobe: Lobe, u: Array) -> tuple[Array, Array, Array]:
     local = lobe.sample(pairs, view.v[:, None, :])
     pdf, value = lobe.pdf(local, view.v[:, None, :]), lobe.value(local, view.v[:, None, :])
     return view.to_world(local), pdf, np.where(pdf > 0.0, value / np.where(pdf > 0.0, pdf, 1.0), 0.0)
-
-
-def _level(environment: Environment, samples_per_steradian: Array, z: Array, bias: float) -> Array:
-    covered = samples_per_steradian * environment.texel_solid_angle(z)
-    return np.asarray(np.maximum(0.0, bias - 0.5 * np.log2(np.maximum(covered, LEAST))))
 
 
 def rms(estimate: Array, truth: Array) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from conformance.reference.exact import frame_tangent_and_bitangent
 from conformance.reference.lobes import LOBES, reference_of
 
 Array = npt.NDArray[np.float64]
@@ -87,12 +88,7 @@ class View:
 
 def about(normals: Array, v: Array) -> View:
     """Views whose normals are given, tangents by Duff et al. 2017, viewers (n, 3) in the local frame."""
-    x, y, z = normals[:, 0], normals[:, 1], normals[:, 2]
-    sign = np.where(z >= 0.0, 1.0, -1.0)
-    a = -1.0 / (sign + z)
-    tangent = np.stack([1.0 + sign * x * x * a, sign * x * y * a, -sign * x], axis=-1)
-    bitangent = np.stack([x * y * a, sign + y * y * a, -y], axis=-1)
-    return View(tangent, bitangent, normals, v)
+    return View(*frame_tangent_and_bitangent(normals), normals, v)
 
 
 def along_x(v: Array) -> View:

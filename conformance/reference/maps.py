@@ -7,6 +7,7 @@ Directions (N, 3), texture coordinates (N, 2) in [0, 1]^2 unless said otherwise,
 from collections.abc import Callable, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from conformance.reference.ambiguous import ROUNDING, SMALLEST_NORMAL, Inputs
 from conformance.reference.exact import Array, Mask, Reference, Struct, length, real, stack, unit
@@ -26,7 +27,7 @@ def parabolic_direction(uv: Array) -> Array:
     return _from_plane(2.0 * real(uv) - 1.0, np.float64(1.0))
 
 
-def dual_paraboloid_uv(w: Array, border: Array) -> Struct:
+def dual_paraboloid_uv(w: Array, border: npt.ArrayLike) -> Struct:
     """The paraboloid of the hemisphere that w is in, shrunk by the border scale; back = 1 for w.z < 0."""
     w = unit(w)
     plane = w[..., :2] / (1.0 + np.abs(w[..., 2:]))
@@ -39,7 +40,9 @@ def dual_paraboloid_direction(uv: Array, back: Array, border: Array) -> Array:
     return _from_plane((2.0 * real(uv) - 1.0) * real(border)[..., None], sign)
 
 
-def dual_paraboloid_solid_angle(z: Array, width: Array, height: Array, border: Array) -> Array:
+def dual_paraboloid_solid_angle(
+    z: Array, width: npt.ArrayLike, height: npt.ArrayLike, border: npt.ArrayLike
+) -> Array:
     """Solid angle of the texel that the direction with that z looks up."""
     return 4.0 * real(border) ** 2 * (1.0 + np.abs(real(z))) ** 2 / (real(width) * real(height))
 
@@ -96,18 +99,20 @@ def cube_solid_angle(uv: Array, size: Array) -> Array:
     return 4.0 / (real(size) ** 2 * (1.0 + p[..., 0] ** 2 + p[..., 1] ** 2) ** 1.5)
 
 
-def lod_from_pdf(pdf: Array, samples: Array, texel_solid_angle: Array, lod_bias: Array) -> Array:
+def lod_from_pdf(
+    pdf: Array, samples: npt.ArrayLike, texel_solid_angle: Array, lod_bias: npt.ArrayLike
+) -> Array:
     """Level whose texels are as large as the solid angle 1 / (samples pdf) of one sample."""
     texels = np.maximum(real(samples) * real(pdf) * real(texel_solid_angle), DENSITY_FLOOR)
     return np.maximum(0.0, real(lod_bias) - 0.5 * np.log2(texels))
 
 
-def mis_balance(samples_a: Array, pdf_a: Array, samples_b: Array, pdf_b: Array) -> Array:
+def mis_balance(samples_a: npt.ArrayLike, pdf_a: Array, samples_b: npt.ArrayLike, pdf_b: Array) -> Array:
     """Balance heuristic of strategy a (Veach 1997); 0 where neither strategy reaches the direction."""
     return _share(real(samples_a) * real(pdf_a), real(samples_b) * real(pdf_b), 1)
 
 
-def mis_power(samples_a: Array, pdf_a: Array, samples_b: Array, pdf_b: Array) -> Array:
+def mis_power(samples_a: npt.ArrayLike, pdf_a: Array, samples_b: npt.ArrayLike, pdf_b: Array) -> Array:
     """Power heuristic with exponent 2."""
     return _share(real(samples_a) * real(pdf_a), real(samples_b) * real(pdf_b), 2)
 
