@@ -6,7 +6,7 @@ import functools
 import hashlib
 import tomllib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from codegen.bounds import Bound, read_bounds
@@ -28,15 +28,21 @@ def default_root() -> Path:
 
 @dataclass(frozen=True)
 class Selection:
-    """Functions and structs to emit together, dependencies first, and a hash of their sources.
+    """Functions and structs to emit together, dependencies first.
 
-    names  the functions that were asked for; the others are what these need
+    names    the functions that were asked for; the others are what these need
+    library  where they come from
     """
 
     functions: tuple[Function, ...]
     structs: tuple[StructDef, ...]
-    source_hash: str
-    names: tuple[str, ...] = ()
+    names: tuple[str, ...]
+    library: Library = field(repr=False, compare=False)
+
+    @functools.cached_property
+    def source_hash(self) -> str:
+        """A hash of the sources and the declared bounds, 16 digits; taken when first asked for."""
+        return self.library.source_hash(self.functions, self.structs)
 
 
 class Library:
@@ -52,6 +58,7 @@ class Library:
         self.extra = extra
         self.resolver = Resolver(root, extra)
         self._added: dict[str, Function] = {}
+        self._base: Library | None = None
 
     def with_functions(self, functions: Iterable[Function]) -> Library:
         """This library and further functions that no source holds, made by passes for instance.
@@ -62,8 +69,7 @@ class Library:
         extended = Library.__new__(Library)
         extended.root, extended.extra, extended.resolver = self.root, self.extra, self.resolver
         extended._added = {**self._added, **{f.name: f for f in functions}}
-        if "bounds" in self.__dict__:
-            extended.__dict__["bounds"] = self.bounds
+        extended._base = self._base or self
         return extended
 
     @functools.cached_property
@@ -87,7 +93,7 @@ class Library:
         """One function; raises UserError with the nearest name if there is none."""
         if name in self._added:
             return self._added[name]
-        if name not in self.resolver.function_names():
+        if not self.resolver.defines(name):
             raise unknown("function", name, self.documented)
         return self.resolver.function(name)
 
@@ -110,6 +116,8 @@ class Library:
     @functools.cached_property
     def bounds(self) -> dict[str, list[Bound]]:
         """Declared error bounds by function name, from shaderlib/<section>/bounds.toml."""
+        if self._base is not None:
+            return self._base.bounds
         bounds: dict[str, list[Bound]] = {}
         beside = [path for folder in self.extra if (path := folder / "bounds.toml").is_file()]
         for path in [*sorted(self.root.glob("*/bounds.toml")), *beside]:
@@ -140,8 +148,7 @@ class Library:
         for name in wanted:
             visit(name)
         structs = self._structs_of(ordered.values())
-        source_hash = self._hash(ordered.values(), structs)
-        return Selection(tuple(ordered.values()), structs, source_hash, tuple(wanted))
+        return Selection(tuple(ordered.values()), structs, tuple(wanted), self)
 
     def _structs_of(self, functions: Iterable[Function]) -> tuple[StructDef, ...]:
         needed: dict[str, StructDef] = {}
@@ -160,7 +167,8 @@ class Library:
                 visit(e.type)
         return tuple(needed.values())
 
-    def _hash(self, functions: Iterable[Function], structs: Iterable[StructDef]) -> str:
+    def source_hash(self, functions: Iterable[Function], structs: Iterable[StructDef]) -> str:
+        """A hash of the files that define these, of added functions' trees, and of the declared bounds."""
         added = [f for f in functions if f.name in self._added]
         names = [*(f.name for f in functions if f not in added), *(s.name for s in structs)]
         files = self.resolver.needed_files(self.resolver.module_of(name) for name in names)

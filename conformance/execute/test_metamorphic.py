@@ -33,7 +33,6 @@ from conformance.metamorphic.pairs import Pair, draw, input_pair, source_pair
 from conformance.metamorphic.plan import input_pairs, library_pairs, program_pairs, random_programs
 from conformance.metamorphic.relation import Changed, SourceRelation
 from conformance.metamorphic.source.tools import changed_body
-from conformance.programs.extended import ExtendedLibrary
 from targets import TimedRuntime
 
 LIBRARY = load_library()
@@ -88,7 +87,7 @@ def test_every_rewriting_makes_well_formed_programs(tmp_path: Path) -> None:
     pairs = [*library_pairs(LIBRARY, 4, FORMED), *program_pairs(library, cases, 4, None)]
     for pair in pairs:
         base = library if pair.subject.startswith("case_") else LIBRARY
-        extended = ExtendedLibrary(base, {f.name: f for f in pair.added})
+        extended = base.with_functions(pair.added)
         verify_selection(extended.select([pair.second.name]).functions)
     assert {p.relation for p in pairs} == {r.name for r in source.RELATIONS}
 

@@ -15,7 +15,6 @@ from codegen.ir.verify import MalformedIRError, verify_selection
 from codegen.library import Library
 from conformance.fuzz.shrink import size, smaller
 from conformance.programs import batch, judge, rearranged
-from conformance.programs.extended import ExtendedLibrary
 from targets import BuildFailed, Runtime
 
 MOST_TRIES = 4_000
@@ -53,17 +52,13 @@ def reduce(library: Library, entry: str, fails: Fails) -> Reduced:
                 tries += 1
                 if tries >= MOST_TRIES:
                     break
-                proposed = ExtendedLibrary(library, {**_added(current), candidate.name: settled(candidate)})
+                proposed = current.with_functions([settled(candidate)])
                 if _better(proposed, current, entry) and fails(proposed, entry):
                     current, progress = proposed, True
                     break
             if progress:
                 break
     return Reduced(current, entry, size(current.select([entry]).functions), tries)
-
-
-def _added(library: Library) -> dict[str, ir.Function]:
-    return library.added if isinstance(library, ExtendedLibrary) else {}
 
 
 def _better(proposed: Library, current: Library, entry: str) -> bool:

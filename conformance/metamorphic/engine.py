@@ -15,7 +15,6 @@ from codegen.library import Library
 from conformance.check.show import lane_inputs
 from conformance.metamorphic.pairs import Pair, columns
 from conformance.programs import batch, judge, rearranged
-from conformance.programs.extended import ExtendedLibrary
 from targets import Runtime
 
 BATCH = 12
@@ -61,7 +60,7 @@ def run_pairs(library: Library, pairs: Iterable[Pair], runtimes: Sequence[Runtim
     waiting = list(pairs)
     for start in range(0, len(waiting), BATCH):
         part = waiting[start : start + BATCH]
-        extended = ExtendedLibrary(library, {f.name: f for pair in part for f in pair.added})
+        extended = library.with_functions(f for pair in part for f in pair.added)
         for pair in part:
             _check_meaning(report, extended, pair)
         for runtime in runtimes:

@@ -21,7 +21,6 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import Vector
 from codegen.library import Library
 from conformance.programs.chains import chained, straightened
-from conformance.programs.extended import ExtendedLibrary
 from conformance.programs.interpolated import interpolated
 
 REARRANGING = frozenset({"glsl", "glsl_es", "vulkan", "wgsl", "opencl_relaxed"})
@@ -51,12 +50,12 @@ def _forms(library: Library, name: str, inputs: Mapping[str, Any]) -> Iterator[t
     """Every rearranged form of a function with its arguments, the ones that cost least first."""
     selected = library.select([name]).functions
     for change in (_moved(_inwards), _moved(_outwards), interpolated):
-        yield ExtendedLibrary(library, {f.name: change(f) for f in selected}), inputs
+        yield library.with_functions(map(change, selected)), inputs
     straight = straightened(library, name)
     arguments = straight.arguments(inputs) if straight.parameters else {}
     for constants_first in (False, True):
         made = chained(straight.function, library, constants_first)
-        yield ExtendedLibrary(library, {name: made}), arguments
+        yield library.with_functions([made]), arguments
 
 
 def _components_inside(allowed: Permitted, value: Value) -> Array:

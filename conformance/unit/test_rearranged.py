@@ -17,7 +17,6 @@ from conformance.fuzz.case import draw_inputs, make_case
 from conformance.fuzz.source import write
 from conformance.metamorphic.pairs import columns
 from conformance.programs.chains import chained, straightened
-from conformance.programs.extended import ExtendedLibrary
 from conformance.programs.interpolated import interpolated
 from conformance.programs.rearranged import explained
 from conformance.unit.support.sources import library_of
@@ -146,9 +145,7 @@ def test_chains_mean_what_they_were_made_of(constants_first: bool, tmp_path: Pat
         changed += made.body != straight.function.body
         inputs = draw_inputs(case, library.function(case.entry).parameters, 32)
         wanted = evaluate(library, case.entry, inputs, "float64")
-        got = evaluate(
-            ExtendedLibrary(library, {case.entry: made}), case.entry, straight.arguments(inputs), "float64"
-        )
+        got = evaluate(library.with_functions([made]), case.entry, straight.arguments(inputs), "float64")
         for a, b in zip(columns(wanted), columns(got), strict=True):
             near = np.abs(a.astype(np.float64) - b) <= SAME * (1.0 + np.abs(a.astype(np.float64)))
             # Where a comparison or a conversion turns on the last bit, a few lanes may go the other way.
