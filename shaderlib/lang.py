@@ -765,3 +765,8 @@ def sqrt(x: f32) -> f32: ...
 def sqrt(x: Any) -> Any:
     """Square root of x >= 0, componentwise."""
     raise NotImplementedError
+
+
+def texture_size(t: Texture) -> vec2:
+    """Width and height of the largest level, in texels."""
+    raise NotImplementedError

@@ -51,6 +51,8 @@ class ExprPrinter:
 
     def builtin(self, e: ir.Builtin) -> str:
         op = BUILTINS[e.op]
+        if self.dialect.target in op.text and isinstance(e.args[0], ir.Var):
+            return op.text[self.dialect.target].format(e.args[0].name)
         trailing = tuple(ir.Const(F32, x) for x in op.trailing)
         looks_up = bool(self.dialect.lookup) and any(a.type == TEXTURE for a in e.args)
         name = self.dialect.lookup if looks_up else op.spelling(self.dialect.target)

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.errors import UserError, nearest, unknown
-from codegen.evaluate.textures import as_map, lookup_in, texture_map
+from codegen.evaluate.textures import as_map, lookup_in, size_in, texture_map
 from codegen.ir.types import BOOL, F16, F32, I32, TEXTURE, U32, Scalar, Struct, Type, Vector
 from codegen.ir.types import Array as ArrayType
 
@@ -64,6 +64,7 @@ def _numpy_namespace(floats: type[np.generic]) -> SimpleNamespace:
         float_to_bits=_float_to_bits,
         bits_to_float=to_float,
         lookup_level=lookup_in(floats, np.floor),
+        texture_size=size_in(floats),
     )
 
 

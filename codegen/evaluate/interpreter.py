@@ -12,7 +12,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from codegen.evaluate.arrays import Arithmetic, Array, Value, choose, convert_inputs
+from codegen.evaluate.arrays import Arithmetic, Array, Value, broadcast, choose, convert_inputs
 from codegen.evaluate.arrays import arithmetic as find_arithmetic
 from codegen.evaluate.textures import as_map
 from codegen.half import half_rules
@@ -132,7 +132,9 @@ class _Frame:
                 return self.fit(e.type, OPERATORS[e.op].meaning(m, a, b))
             case ir.Builtin():
                 args = [self.expr(a) for a in e.args]
-                return self.fit(e.type, BUILTINS[e.op].meaning(m, *args))
+                found = self.fit(e.type, BUILTINS[e.op].meaning(m, *args))
+                # What only a map tells has one lane.
+                return broadcast(found, self.count) if len(found) != self.count else found
             case ir.Call():
                 return self.call(e)
             case ir.Construct():

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import numpy.typing as npt
 
-from codegen.evaluate.textures import lookup_in
+from codegen.evaluate.textures import lookup_in, size_in
 
 Array = npt.NDArray[Any]
 
@@ -50,6 +50,7 @@ def namespace() -> SimpleNamespace:
         arctan2=each(mpmath.atan2, 2),
         stack=np.stack,
         lookup_level=lookup_in(np.object_, each(mpmath.floor), mpmath.mpf),
+        texture_size=size_in(np.object_, mpmath.mpf),
         logical_and=np.logical_and,
         logical_or=np.logical_or,
         logical_not=np.logical_not,

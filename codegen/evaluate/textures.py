@@ -112,6 +112,19 @@ def lookup_in(
     return lookup_level
 
 
+def size_in(
+    floats: type[np.generic], number: Callable[[float], Any] | None = None
+) -> Callable[[TextureMap], Array]:
+    """The meaning of texture_size in an arithmetic: width and height of the largest level, (1, 2)."""
+    make: Callable[[float], Any] = number or floats
+
+    def texture_size(t: TextureMap) -> Array:
+        height, width = t.levels[0].shape[:2]
+        return np.array([[make(width), make(height)]], floats)
+
+    return texture_size
+
+
 def _whole(a: Array, low: int, high: int) -> Array:
     """Whole numbers as integers; lanes that no branch takes may hold anything."""
     numbers = np.nan_to_num(a.astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0)

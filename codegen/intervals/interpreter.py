@@ -163,6 +163,9 @@ class Frame:
 
     def builtin(self, op: str, args: tuple[Value, ...]) -> Value:
         texture = as_map(args[0])
+        if texture is not None and op == "texture_size":
+            height, width = texture.levels[0].shape[:2]
+            return tuple(constant(float(n), False) for n in (width, height))
         if texture is not None:
             uv = cast(tuple[Range, ...], args[1])
             lod = cast(Range, args[2]) if len(args) > 2 else None

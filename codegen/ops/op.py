@@ -29,6 +29,8 @@ class Op:
     names     parameter names for editors (built-ins)
     spell     spelling per target where it differs from `name`
     trailing  numbers that the text adds to the arguments
+    text      per target, the whole expression of a built-in that is no call there; {0} is the first argument's
+              name
     half      whether the overloads of f32 hold for f16 as well
     work      scalar operations by cost class for vectors of n components, where that is not n times `cost`
     """
@@ -45,6 +47,7 @@ class Op:
     work: Callable[[int], Mapping[str, int]] | None = None
     half: bool = True
     trailing: tuple[float, ...] = ()
+    text: Mapping[str, str] = field(default_factory=dict)
 
     def operations(self, size: int) -> Mapping[str, int]:
         """Scalar operations by cost class for operands of `size` components."""

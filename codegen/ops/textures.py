@@ -36,4 +36,20 @@ BUILTINS = (
         spell={"glsl": "textureLod", "wgsl": "textureSampleLevel"},
         half=False,
     ),
+    Op(
+        "texture_size",
+        one((TEXTURE,), VEC2),
+        lambda m, t: m.texture_size(t),
+        "free",
+        (),
+        "WGSL 17.7.1 textureDimensions; GLSL 8.9.1 textureSize; OpenCL 6.15.15 get_image_dim",
+        summary="Width and height of the largest level, in texels.",
+        names=("t",),
+        text={
+            "glsl": "vec2(textureSize({0}, 0))",
+            "wgsl": "vec2<f32>(textureDimensions({0}))",
+            "opencl": "convert_float2({0}_layout.xy)",
+        },
+        half=False,
+    ),
 )

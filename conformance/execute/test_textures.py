@@ -3,7 +3,7 @@
 Plan. Random maps of all shapes and one with a single hot texel, repeated and clamped edges, places inside,
 outside, on centres and edges, levels between and beyond: every result is one that the specification permits,
 and on drivers of textures/filtering.toml within the declared error of the float64 evaluation. A function of
-the library, with its reference. More than one map in a function.
+the library, with its reference. More than one map in a function; sizes of maps.
 """
 
 import tomllib
@@ -38,6 +38,10 @@ def blend(
 ) -> vec4:
     \"\"\"Two maps.\"\"\"
     return lookup(a, uv) + 2.0 * lookup(b, uv.yx)
+
+def sizes(a: Annotated[Texture, Edges("{u}", "{v}")], b: Annotated[Texture, Edges("{v}", "{u}")]) -> vec4:
+    \"\"\"Sizes of two maps.\"\"\"
+    return vec4(texture_size(a), texture_size(b))
 """
 
 
@@ -81,6 +85,13 @@ def test_two_maps(runtime: TimedRuntime, tmp_path: Path) -> None:
         3.0,
         runtime,
     )
+
+
+def test_sizes_of_maps(runtime: TimedRuntime, tmp_path: Path) -> None:
+    library = library_of(tmp_path, PROBE.format(u="repeat", v="clamp"))
+    inputs = {"a": chain(16, 8, 3, SEED), "b": chain(5, 3, 1, SEED)}
+    got = np.asarray(execute(library, "sizes", inputs, runtime))
+    assert got.tolist() == [[16.0, 8.0, 5.0, 3.0]] * len(got)
 
 
 def test_environment(runtime: TimedRuntime) -> None:

@@ -41,6 +41,14 @@ def base(t: Annotated[Texture, Edges("{u}", "{v}")], uv: P) -> vec4:
 def passed(t: Annotated[Texture, Edges("{u}", "{v}")], uv: P) -> vec4:
     \"\"\"A lookup through a call.\"\"\"
     return base(t, uv)
+
+def size(t: Annotated[Texture, Edges("{u}", "{v}")]) -> vec2:
+    \"\"\"Its size.\"\"\"
+    return texture_size(t)
+
+def texel(t: Annotated[Texture, Edges("{u}", "{v}")], uv: P) -> vec2:
+    \"\"\"A place in texels.\"\"\"
+    return uv * texture_size(t)
 """
 MAP = 't: Annotated[Texture, Edges("repeat", "clamp")]'
 
@@ -101,6 +109,10 @@ def test_text_of_every_target(tmp_path: Path) -> None:
     assert "return vair_base(t, t_sampler, t_layout, uv);" in texts["opencl"]
     assert "return vair_lookup_level(t, t_sampler, t_layout, uv, 0.0f);" in texts["opencl"]
     assert "$" not in texts["opencl"]
+    sizes = {target: emit(library, dialect(target), ["size"]) for target in ("glsl", "wgsl", "opencl")}
+    assert "return vec2(textureSize(t, 0));" in sizes["glsl"]
+    assert "return vec2<f32>(textureDimensions(t));" in sizes["wgsl"]
+    assert "return convert_float2(t_layout.xy);" in sizes["opencl"]
     assert "lookup_level" not in emit(load_library(), dialect("opencl"), ["sin_angle"])
 
 
@@ -113,6 +125,19 @@ def test_texels_at_centres_and_means_between(tmp_path: Path) -> None:
     assert np.allclose(got[1], (level[0, 1].astype(float) + level[0, 2]) / 2)
     assert np.allclose(got[2], (level[0, 1].astype(float) + level[1, 1]) / 2)
     assert np.allclose(got[3], level[:, 1:3].astype(float).mean(axis=(0, 1)))
+
+
+@pytest.mark.parametrize("arithmetic", ["float32", "float64", "mpmath"])
+def test_sizes_are_those_of_the_largest_level(arithmetic: str, tmp_path: Path) -> None:
+    library = probe(tmp_path)
+    levels = chain(5, 3, 2, SEED)
+    assert value(library, "size", {"t": levels}, arithmetic).tolist() == [[5.0, 3.0]]
+    uv = [[0.25, 0.5], [1.0, 2.0]]
+    places_in_texels = [[1.25, 1.5], [5.0, 6.0]]
+    assert value(library, "texel", {"t": levels, "uv": uv}, arithmetic).tolist() == places_in_texels
+    found = permitted(library, "texel", {"t": levels, "uv": uv}, "wgsl")
+    assert found.contains(np.array(places_in_texels, np.float32)).all()
+    assert not found.contains(np.array(places_in_texels, np.float32) + 1.0).any()
 
 
 @pytest.mark.parametrize("edges", [("repeat", "clamp"), ("clamp", "repeat"), ("repeat", "repeat")])

@@ -11,7 +11,7 @@ from conformance.metamorphic.relation import Changed, SourceRelation
 from conformance.metamorphic.source.tools import changed_body
 
 GEOMETRIC = frozenset({"dot", "cross", "length", "normalize"})
-COMPONENTWISE = frozenset(BUILTINS) - GEOMETRIC - {"lookup", "lookup_level"}
+COMPONENTWISE = frozenset(BUILTINS) - GEOMETRIC - {"lookup", "lookup_level", "texture_size"}
 
 
 def component(e: ir.Expr, k: int) -> ir.Expr:

@@ -8,8 +8,8 @@ from codegen.library import Library
 HEADER = (
     "from typing import Annotated; from shaderlib.lang import abs, atan2, bits_to_float, clamp, cos, cross, "
     "dot, exp, exp2, f32, float_to_bits, floor, i32, inverse_sqrt, length, log, log2, lookup, "
-    "lookup_level, max, min, normalize, sin, sqrt, u32, uvec2, uvec3, vec2, vec3, vec4, Edges, Finite, "
-    "Interval, Length, Texture, Unit, helper, printed, "
+    "lookup_level, max, min, normalize, sin, sqrt, texture_size, u32, uvec2, uvec3, vec2, vec3, vec4, Edges, "
+    "Finite, Interval, Length, Texture, Unit, helper, printed, "
     "struct, variant; "
     "X = Annotated[f32, Finite()]; V = Annotated[vec3, Finite()]; P = Annotated[vec2, Finite()]; "
     "Q = Annotated[vec4, Finite()]; D = Annotated[vec3, Unit()]\n"
