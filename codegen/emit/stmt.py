@@ -95,10 +95,11 @@ class StmtPrinter:
         return [*lines, indent + "}"]
 
     def loop_head(self, s: ir.For) -> str:
-        if self.dialect.declaration == "name: type":
-            return f"for (var {s.name} = {s.start}; {s.name} < {s.stop}; {s.name}++) {{"
-        i32 = self.dialect.types["i32"]
-        return f"for ({i32} {s.name} = {s.start}; {s.name} < {s.stop}; {s.name}++) {{"
+        start, stop = (self.expr.show(ir.Const(s.index_type, bound)) for bound in (s.start, s.stop))
+        if not isinstance(s.limit, ir.Const | None):
+            stop = self.expr.show(ir.Builtin(s.index_type, "min", (s.limit, ir.Const(s.index_type, s.stop))))
+        word = "var" if self.dialect.declaration == "name: type" else self.dialect.types[s.index_type.name]
+        return f"for ({word} {s.name} = {start}; {s.name} < {stop}; {s.name}++) {{"
 
     def function(self, f: ir.Function) -> list[str]:
         """A whole definition."""

@@ -102,14 +102,25 @@ class _Frame:
                     self.block(s.then, active & condition)
                     self.block(s.orelse, active & ~condition)
                 case ir.For():
-                    for i in range(s.start, s.stop):
-                        self.scope[s.name] = np.full(self.count, i, np.int32)
-                        self.block(s.body, active)
+                    self.loop(s, active)
                 case ir.Return():
                     value = self.expr(s.value)
                     live = active & ~self.returned
                     self.result = value if self.result is None else choose(live, value, self.result)
                     self.returned = self.returned | live
+
+    def loop(self, s: ir.For, active: Array) -> None:
+        """As many iterations as the lane that runs longest has; the others wait."""
+        if s.limit is None:
+            for i in range(s.start, s.stop):
+                self.scope[s.name] = np.full(self.count, i, np.int32)
+                self.block(s.body, active)
+            return
+        limit = self.array(s.limit)
+        most = int(limit[active & ~self.returned].max(initial=0))
+        for i in range(s.start, min(s.stop, most)):
+            self.scope[s.name] = np.full(self.count, i, limit.dtype)
+            self.block(s.body, active & (limit > i))
 
     def array(self, e: ir.Expr) -> Array:
         value = self.expr(e)

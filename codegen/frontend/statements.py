@@ -13,7 +13,7 @@ from codegen.frontend.expressions import ExpressionLowering
 from codegen.frontend.scope import Names
 from codegen.frontend.source import SourceFile, describe
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, I32, TEXTURE, Type
+from codegen.ir.types import BOOL, I32, TEXTURE, U32, Type
 
 MAX_ITERATIONS = 65536
 """Longest loop the front end accepts; shaders hang a machine long before this is useful."""
@@ -114,17 +114,22 @@ class StatementLowering:
         return ir.Let(name, e, False, node.lineno)
 
     def loop(self, node: ast.For) -> ir.Stmt:
+        limit: ir.Expr | None = None
         match node:
             case ast.For(
                 target=ast.Name(id=name),
                 iter=ast.Call(func=ast.Name(id="range"), args=bounds, keywords=[]),
                 orelse=[],
             ) if 1 <= len(bounds) <= 2:
+                if len(bounds) == 1:
+                    bounds, limit = self.limit(bounds[0])
                 values = [constants.fold(b, lambda n: self.resolver.constant(self.file, n)) for b in bounds]
             case _:
                 raise self.file.error(node, "a loop is written for i in range(CONSTANT)")
         if not all(isinstance(v, int) and not isinstance(v, bool) for v in values):
-            raise self.file.error(node, "the bounds of range() must be constant whole numbers")
+            raise self.file.error(
+                node, "the bounds of range() must be constant whole numbers, or min(PARAMETER, CONSTANT)"
+            )
         whole = [int(v) for v in values if v is not None]
         if not all(-(2**31) < v < 2**31 for v in whole):
             raise self.file.error(node, "the bounds of range() must fit into an i32")
@@ -135,13 +140,24 @@ class StatementLowering:
             raise self.file.error(node, f'"{name}" is already in use')
         names.check(name, "local", self.file.place(node))
         outer = self.scope
-        self.scope = self.scope.new_child({name: I32})
+        self.scope = self.scope.new_child({name: I32 if limit is None else limit.type})
         self.loop_names.add(name)
         body = self.block(node.body)
         self.loop_names.discard(name)
         self.ended.add(name)
         self.scope = outer
-        return ir.For(name, start, stop, body, node.lineno)
+        return ir.For(name, start, stop, body, node.lineno, limit)
+
+    def limit(self, bound: ast.expr) -> tuple[list[ast.expr], ir.Expr | None]:
+        """The constant and the parameter of range(min(PARAMETER, CONSTANT)); other bounds as they are."""
+        match bound:
+            case ast.Call(func=ast.Name(id="min"), args=[ast.Name(id=name) as first, second], keywords=[]):
+                value = self.expression(first)
+                if name not in self.parameters or value.type not in (I32, U32):
+                    raise self.file.error(first, "what ends a loop early is a parameter, i32 or u32")
+                return [second], value
+            case _:
+                return [bound], None
 
 
 def _returns(body: tuple[ir.Stmt, ...]) -> bool:

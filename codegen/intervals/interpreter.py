@@ -72,14 +72,24 @@ class Frame:
                     self.block(s.then, all_of(active, condition))
                     self.block(s.orelse, all_of(active, opposite(condition)))
                 case ir.For():
-                    for i in range(s.start, s.stop):
-                        self.scope[s.name] = self.shared(("i32", i), functools.partial(constant, i, True))
-                        self.block(s.body, active)
+                    self.loop(s, active)
                 case ir.Return():
                     value = self.expr(s.value)
                     live = all_of(active, opposite(self.returned))
                     self.result = value if self.result is None else choose(live, value, self.result)
                     self.returned = Truth(self.returned.true | live.true, self.returned.false & live.false)
+
+    def loop(self, s: ir.For, active: Truth) -> None:
+        """All iterations that any lane may run."""
+        limit = None if s.limit is None else self.expr(s.limit)
+        assert limit is None or isinstance(limit, Whole)
+        stop = s.stop if limit is None else min(s.stop, int(limit.high.max()))
+        signed = s.index_type == I32
+        for i in range(s.start, stop):
+            key = ("i32", i) if signed else ("u32", "int", i, str(i))
+            self.scope[s.name] = self.shared(key, functools.partial(constant, i, signed))
+            running = always(True) if limit is None else Truth(limit.high > i, limit.low <= i)
+            self.block(s.body, all_of(active, running))
 
     def truth(self, e: ir.Expr) -> Truth:
         value = self.expr(e)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 from codegen.errors import Place
 from codegen.ir.domains import Domain
-from codegen.ir.types import TEXTURE, Struct, Type
+from codegen.ir.types import I32, TEXTURE, Struct, Type
 
 
 @dataclass(frozen=True)
@@ -155,13 +155,22 @@ class If:
 
 @dataclass(frozen=True)
 class For:
-    """`for name in range(start, stop)` with constant bounds; name is an i32."""
+    """`for name in range(start, stop)` with constant bounds; name is an i32.
+
+    limit  of `for name in range(min(limit, stop))`: an i32 or u32 that the body does not change, evaluated
+           before the loop; name is of its type
+    """
 
     name: str
     start: int
     stop: int
     body: tuple[Stmt, ...]
     line: int = field(default=0, compare=False)
+    limit: Expr | None = None
+
+    @property
+    def index_type(self) -> Type:
+        return I32 if self.limit is None else self.limit.type
 
 
 @dataclass(frozen=True)
@@ -286,7 +295,8 @@ def map_body(body: tuple[Stmt, ...], change: Callable[[Expr], Expr]) -> tuple[St
                     orelse=map_body(s.orelse, change),
                 )
             case For():
-                return replace(s, body=map_body(s.body, change))
+                limit = None if s.limit is None else map_expr(s.limit, change)
+                return replace(s, limit=limit, body=map_body(s.body, change))
             case _:
                 return replace(s, value=map_expr(s.value, change))
 
@@ -318,6 +328,8 @@ def expressions(body: tuple[Stmt, ...]) -> Iterator[Expr]:
             yield from walk(s.condition)
         elif not isinstance(s, For):
             yield from walk(s.value)
+        elif s.limit is not None:
+            yield from walk(s.limit)
 
 
 def callees(function: Function) -> list[str]:

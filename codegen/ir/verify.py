@@ -92,11 +92,23 @@ class _Checker:
                 case ir.For():
                     if s.name in scope:
                         raise self.fail(f'"{s.name}" is defined twice')
-                    self.block(s.body, {**scope, s.name: I32}, frozenset(mutable))
+                    self.limit(s, scope)
+                    self.block(s.body, {**scope, s.name: s.index_type}, frozenset(mutable))
                 case ir.Return():
                     self.expr(s.value, scope)
                     if s.value.type != self.function.returns:
                         raise self.fail(f"returns {s.value.type.name}")
+
+    def limit(self, s: ir.For, scope: Mapping[str, Type]) -> None:
+        """What ends a loop early is a whole number that no iteration changes: texts read it every time."""
+        if s.limit is None:
+            return
+        self.expr(s.limit, scope)
+        if s.limit.type not in (I32, U32) or s.start != 0:
+            raise self.fail(f'the loop over "{s.name}" does not count from 0 to a whole number')
+        assigned = {inner.name for inner in ir.statements(s.body) if isinstance(inner, ir.Assign)}
+        if any(isinstance(e, ir.Var) and e.name in assigned for e in ir.walk(s.limit)):
+            raise self.fail(f'the loop over "{s.name}" changes its own limit')
 
     def expr(self, e: ir.Expr, scope: Mapping[str, Type]) -> None:
         for child in ir.children(e):

@@ -46,12 +46,13 @@ class Carried:
 
 @dataclass
 class Loop:
-    """A counted loop."""
+    """A counted loop; `limit` ends it early."""
 
     index: ir.Var
     name: str
     start: int
     stop: int
+    limit: ir.Expr | None
     body: list[Item]
     carried: list[Carried]
 
@@ -77,6 +78,8 @@ def roots(items: list[Item]) -> Iterator[ir.Expr]:
             for m in item.merges:
                 yield from (m.then, m.orelse)
         else:
+            if item.limit is not None:
+                yield item.limit
             yield from roots(item.body)
             for c in item.carried:
                 yield from (c.initial, c.following)

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 
 from codegen.errors import UserError
 from codegen.ir import nodes as ir
-from codegen.ir.types import F16, F32, I32, Struct, Type, element_of, half_of
+from codegen.ir.types import F16, F32, Struct, Type, element_of, half_of
 from codegen.library import Library
 from codegen.ops import BUILTINS
 
@@ -147,7 +147,8 @@ class _Body:
                         orelse=self.block(s.orelse, scope),
                     )
                 case ir.For():
-                    made = replace(s, body=self.block(s.body, {**scope, s.name: I32}))
+                    limit = None if s.limit is None else self.own(s.limit, scope)
+                    made = replace(s, limit=limit, body=self.block(s.body, {**scope, s.name: s.index_type}))
             found.append(made)
         return tuple(found)
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 
 from codegen.errors import UserError
 from codegen.ir import nodes as ir
-from codegen.ir.types import I32, Array, Struct, Type
+from codegen.ir.types import Array, Struct, Type
 from codegen.library import Library
 from codegen.passes import branches
 from codegen.passes.flow import Branch, Carried, Flow, Item, Loop, Merge
@@ -89,9 +89,10 @@ class Inliner:
                         return self.branch(s, scope, rest)
                     self.branch(s, scope, ())
                 case ir.For():
+                    loop, limit = self.limited(s, scope)
                     if _returns(s):
-                        return self.block((*_iterations(s), *rest), scope)
-                    self.loop(s, scope)
+                        return self.block((*_iterations(loop, limit), *rest), scope)
+                    self.loop(loop, limit, scope)
         return None
 
     def named(self, value: Value, name: str, rank: int = LOCAL) -> Value:
@@ -160,34 +161,43 @@ class Inliner:
         assert isinstance(made, ir.Var)
         return made
 
-    def loop(self, s: ir.For, scope: Scope) -> None:
+    def limited(self, s: ir.For, scope: Scope) -> tuple[ir.For, ir.Expr | None]:
+        """The loop with what ends it early; a constant is its bound, too."""
+        limit = None if s.limit is None else self.scalar(s.limit, scope)
+        if isinstance(limit, ir.Const):
+            return replace(s, stop=max(min(s.stop, int(limit.value)), s.start)), limit
+        return s, limit
+
+    def loop(self, s: ir.For, limit: ir.Expr | None, scope: Scope) -> None:
         """A counted loop without a return: unrolled where it is short, else kept."""
         count = max(s.stop - s.start, 0)
-        if count <= self.unroll:
+        if isinstance(limit, ir.Const | None) and count <= self.unroll:
             self.values.note("unroll", f"{count} iterations over {s.name}", "the bounds are constant")
-            self.block(_iterations(s), scope)
+            self.block(_iterations(s, limit), scope)
             return
         assigned = {a.name for a in ir.statements(s.body) if isinstance(a, ir.Assign)}
         carried = [name for name in scope if name in assigned]
         while True:
-            kept, changed = self.iteration(s, scope, carried)
+            kept, changed = self.iteration(s, limit, scope, carried)
             still = [name for name in carried if name in changed]
             if still == carried:
                 break
             carried = still
         self.items.append(kept)
 
-    def iteration(self, s: ir.For, scope: Scope, carried: list[str]) -> tuple[Loop, set[str]]:
+    def iteration(
+        self, s: ir.For, limit: ir.Expr | None, scope: Scope, carried: list[str]
+    ) -> tuple[Loop, set[str]]:
         """One body over leaves for what it changes; also which of those it does change."""
         outer, line = self.items, self.values.line
         self.items = []
-        index = self.leaf(I32, s.name)
+        index = self.leaf(s.index_type, s.name)
         self.values.indices[index.name] = s.start, s.stop - 1
         inner: Scope = {**scope, s.name: index}
         inside = {name: self.leaves_like(scope[name], name) for name in carried}
         inner.update(inside)
         self.block(s.body, inner)
-        loop = Loop(index, s.name, s.start, s.stop, self.items, [])
+        loop = Loop(index, s.name, s.start, s.stop, limit, self.items, [])
         self.items, self.values.line = outer, line
         changed = {
             name
@@ -281,11 +291,15 @@ def _returns(s: ir.Stmt) -> bool:
     return any(isinstance(x, ir.Return) for x in ir.statements((s,)))
 
 
-def _iterations(s: ir.For) -> tuple[ir.Stmt, ...]:
+def _iterations(s: ir.For, limit: ir.Expr | None) -> tuple[ir.Stmt, ...]:
     """The bodies of all iterations in a row."""
+    if not isinstance(limit, ir.Const | None):
+        raise UserError(f'a loop over "{s.name}" that may return ends at a value that is not known')
     if s.stop - s.start > MOST_UNROLLED:
         raise UserError(
             f"a loop that may return runs {s.stop - s.start} times; at most {MOST_UNROLLED} are unrolled"
         )
-    bodies = ((ir.Let(s.name, ir.Const(I32, i), line=s.line), *s.body) for i in range(s.start, s.stop))
+    bodies = (
+        (ir.Let(s.name, ir.Const(s.index_type, i), line=s.line), *s.body) for i in range(s.start, s.stop)
+    )
     return tuple(statement for body in bodies for statement in body)

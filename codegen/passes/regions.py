@@ -113,6 +113,8 @@ def _regions(flow: Flow, result: ir.Expr) -> tuple[Region, dict[str, Region], li
             else:
                 body = enter(item.body, region, True)
                 region.inner[id(item)] = (body,)
+                if item.limit is not None:
+                    used.append((item.limit, region))
                 bound[item.index.name] = body
                 for c in item.carried:
                     bound[c.inside.name], bound[c.outside.name] = body, region

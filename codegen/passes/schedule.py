@@ -89,6 +89,7 @@ class _Writer:
             self.variables[c.inside.name] = self.variables[c.outside.name] = name
             out.append(ir.Let(name, self.text(c.initial), True, self.next_line()))
         self.variables[item.index.name] = self.names.give(item.name)
+        limit = None if item.limit is None else self.text(item.limit)
         line = self.next_line()
         (inner,) = region.inner[id(item)]
         found: list[ir.Stmt] = []
@@ -103,7 +104,7 @@ class _Writer:
         for c in item.carried:
             value = ir.Var(c.following.type, copies[id(c)]) if id(c) in copies else self.text(c.following)
             found.append(ir.Assign(self.variables[c.inside.name], value, self.next_line()))
-        out.append(ir.For(self.variables[item.index.name], item.start, item.stop, tuple(found), line))
+        out.append(ir.For(self.variables[item.index.name], item.start, item.stop, tuple(found), line, limit))
 
     def demand(self, e: ir.Expr, region: Region, out: list[ir.Stmt]) -> None:
         """Define the locals of this region that a value needs and that are not there yet."""

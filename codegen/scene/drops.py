@@ -115,7 +115,8 @@ def without(function: ir.Function, term: Term) -> ir.Function:
                         replace(s, condition=visit(s.condition), then=block(s.then), orelse=block(s.orelse))
                     )
                 case ir.For():
-                    made.append(replace(s, body=block(s.body)))
+                    limit = None if s.limit is None else visit(s.limit)
+                    made.append(replace(s, limit=limit, body=block(s.body)))
                 case _:
                     made.append(replace(s, value=visit(s.value)))
         return tuple(made)

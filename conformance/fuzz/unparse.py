@@ -55,6 +55,8 @@ def _block(body: tuple[ir.Stmt, ...], indent: str) -> list[str]:
                     lines += [f"{indent}else:", *_block(s.orelse, indent + STEP)]
             case ir.For():
                 bounds = f"{s.start}, {s.stop}" if s.start else str(s.stop)
+                if s.limit is not None:
+                    bounds = f"min({expression_text(s.limit)}, {s.stop})"
                 lines += [f"{indent}for {s.name} in range({bounds}):", *_block(s.body, indent + STEP)]
     return lines or [f"{indent}pass"]
 
