@@ -1,10 +1,12 @@
 """How lanes are cut into chunks that every device's buffers and dispatches can hold."""
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 
 import numpy as np
 
 from targets.protocol import Prepared
+from targets.textures import TextureData
 from targets.words import Words
 
 GROUP_LANES = 64
@@ -52,25 +54,32 @@ def group_count(lanes: int) -> int:
     return -(-lanes // GROUP_LANES)
 
 
-def run_in_chunks(
-    prepare: Callable[[Words], Prepared], words: Words, slots_out: int, chunk_bytes: int
-) -> Words:
-    """Prepare, launch and read one chunk after the other.
+class ChunkedRuntime(ABC):
+    """A runtime that runs any number of lanes, one chunk after the other; see targets.protocol.Runtime.
 
-    prepare  makes a launchable program of the words of one chunk, (slots_in, m) with m >= 1
-    words    (slots_in, n); n = 0 launches nothing
-    returns  (slots_out, n)
+    chunk_bytes  the largest buffer of words that the device takes
     """
-    check_words(words, slots_out)
-    count = words.shape[1]
-    results = np.empty((slots_out, count), np.uint32)
-    step = chunk_lanes(words.shape[0], slots_out, chunk_bytes)
-    for start in range(0, count, step):
-        chunk = slice(start, min(start + step, count))
-        prepared = prepare(words[:, chunk])
-        try:
-            prepared.launch()
-            results[:, chunk] = prepared.read()
-        finally:
-            prepared.release()
-    return results
+
+    chunk_bytes: int
+
+    @abstractmethod
+    def prepare(
+        self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()
+    ) -> Prepared:
+        """Build a program and upload one chunk of lanes; see targets.protocol.TimedRuntime."""
+
+    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()) -> Words:
+        """Run a program once per lane; no lanes launch nothing. See targets.protocol.Runtime."""
+        check_words(words, slots_out)
+        count = words.shape[1]
+        results = np.empty((slots_out, count), np.uint32)
+        step = chunk_lanes(words.shape[0], slots_out, self.chunk_bytes)
+        for start in range(0, count, step):
+            chunk = slice(start, min(start + step, count))
+            prepared = self.prepare(program, words[:, chunk], slots_out, textures)
+            try:
+                prepared.launch()
+                results[:, chunk] = prepared.read()
+            finally:
+                prepared.release()
+        return results

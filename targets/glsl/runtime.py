@@ -13,10 +13,10 @@ from targets.lanes import (
     CHUNK_BYTES,
     UNIFORM_BYTES,
     UNWRITTEN,
+    ChunkedRuntime,
     check_words,
     group_count,
     padded,
-    run_in_chunks,
 )
 from targets.packages import first_line, require_package
 from targets.programs import Programs
@@ -50,7 +50,7 @@ def open_runtime(
     return GlslRuntime(moderngl, require, uniforms)
 
 
-class GlslRuntime:
+class GlslRuntime(ChunkedRuntime):
     """OpenGL compute. All calls run on one thread, because a context is current on one thread only.
 
     That also keeps the context apart from any other context that a program makes current.
@@ -72,15 +72,6 @@ class GlslRuntime:
     def on_thread(self, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Call a function on the thread of the context and wait for its result."""
         return self._thread.submit(function, *args, **kwargs).result()
-
-    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()) -> Words:
-        """Run a program once per lane; see targets.protocol.Runtime."""
-        return run_in_chunks(
-            lambda chunk: self.prepare(program, chunk, slots_out, textures),
-            words,
-            slots_out,
-            self.chunk_bytes,
-        )
 
     def prepare(
         self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()

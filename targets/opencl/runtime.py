@@ -15,9 +15,9 @@ from targets.lanes import (
     GROUP_LANES,
     UNIFORM_BYTES,
     UNWRITTEN,
+    ChunkedRuntime,
     check_words,
     group_count,
-    run_in_chunks,
 )
 from targets.opencl import packed_levels
 from targets.packages import first_line, fits, require_package
@@ -41,7 +41,7 @@ def open_runtime(options: Sequence[str] = (), uniforms: bool = False) -> "Opencl
     return OpenclRuntime(require_package("pyopencl"), options, UNIFORM_BYTES if uniforms else CHUNK_BYTES)
 
 
-class OpenclRuntime:
+class OpenclRuntime(ChunkedRuntime):
     """OpenCL behind one lock; one queue in order."""
 
     def __init__(self, cl: Any, options: Sequence[str] = (), chunk_bytes: int = CHUNK_BYTES) -> None:
@@ -64,15 +64,6 @@ class OpenclRuntime:
             api=f"{version}, OpenCL C up to {language}",
             driver=f"{device.platform.name.strip()} {device.driver_version.strip()}",
             device=device.name.strip(),
-        )
-
-    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()) -> Words:
-        """Run a program once per lane; see targets.protocol.Runtime."""
-        return run_in_chunks(
-            lambda chunk: self.prepare(program, chunk, slots_out, textures),
-            words,
-            slots_out,
-            self.chunk_bytes,
         )
 
     def prepare(

@@ -13,10 +13,10 @@ from targets.lanes import (
     CHUNK_BYTES,
     UNIFORM_BYTES,
     UNWRITTEN,
+    ChunkedRuntime,
     check_words,
     group_count,
     padded,
-    run_in_chunks,
 )
 from targets.packages import first_line, fits, require_package
 from targets.programs import Programs
@@ -49,7 +49,7 @@ def open_runtime(uniforms: bool = False) -> "WgslRuntime":
     return WgslRuntime(require_package("wgpu"), uniforms)
 
 
-class WgslRuntime:
+class WgslRuntime(ChunkedRuntime):
     """WebGPU compute behind one lock."""
 
     def __init__(self, wgpu: Any, uniforms: bool = False) -> None:
@@ -68,15 +68,6 @@ class WgslRuntime:
         self.filters_floats = FILTER_FEATURE in wanted
         self.chunk_bytes = UNIFORM_BYTES if uniforms else min(CHUNK_BYTES, largest)
         self.device = _describe(adapter)
-
-    def run(self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()) -> Words:
-        """Run a program once per lane; see targets.protocol.Runtime."""
-        return run_in_chunks(
-            lambda chunk: self.prepare(program, chunk, slots_out, textures),
-            words,
-            slots_out,
-            self.chunk_bytes,
-        )
 
     def prepare(
         self, program: str, words: Words, slots_out: int, textures: Sequence[TextureData] = ()
