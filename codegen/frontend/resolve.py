@@ -36,7 +36,8 @@ class Resolver:
         self._paths: dict[str, tuple[Path, str]] = {}
         self._files: dict[str, SourceFile] = {}
         self._defined: dict[str, str] = {}
-        self._function_names: list[str] = []
+        self._function_names: dict[str, None] = {}  # a set in order
+        self._families: dict[str, list[str]] = {}
         self._functions: dict[str, Function] = {}
         self._structs: dict[str, StructDef] = {}
         self._lowering: list[str] = []
@@ -69,7 +70,7 @@ class Resolver:
                 raise SourceError(place, f'"{name}" is already defined in {other}')
             self._defined[name] = module
             if found.group(1) == "def":
-                self._function_names.append(name)
+                self._function_names[name] = None
 
     def file(self, module: str) -> SourceFile:
         """The parsed file of a module."""
@@ -227,10 +228,24 @@ class Resolver:
         """Every function of the sources."""
         return list(self._function_names)
 
+    def defines(self, name: str) -> bool:
+        """Whether a source defines a function of that name."""
+        return name in self._function_names
+
+    def family(self, name: str) -> list[str]:
+        """The functions of the file that defines a name, and of the files named after it."""
+        module = self.module_of(name)
+        if module not in self._families:
+            self._families[module] = [
+                other
+                for other in self._function_names
+                if (found := self.module_of(other)) == module or found.startswith(f"{module}_")
+            ]
+        return self._families[module]
+
     def struct_names(self) -> list[str]:
         """Every struct of the sources."""
-        functions = set(self._function_names)
-        return [name for name in self._defined if name not in functions]
+        return [name for name in self._defined if name not in self._function_names]
 
     def signature(self, file: SourceFile, node: ast.FunctionDef) -> tuple[tuple[Parameter, ...], Type]:
         """Parameters and result type of a function, from its annotations alone."""

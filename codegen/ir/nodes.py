@@ -9,12 +9,37 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from operator import is_
+from typing import Any, TypeVar
 
 from codegen.errors import Place
 from codegen.ir.domains import Domain
 from codegen.ir.types import I32, TEXTURE, Struct, Type
 
+Node = TypeVar("Node")
 
+
+def _hashed_once(kind: type[Node]) -> type[Node]:
+    """A frozen class whose objects remember their hash: trees are keys, and share parts."""
+    plain: Callable[[Node], int] = kind.__hash__
+
+    def hashed(self: Node) -> int:
+        known: dict[str, Any] = self.__dict__
+        if "_hash" not in known:
+            known["_hash"] = plain(self)
+        found: int = known["_hash"]
+        return found
+
+    def state(self: Node) -> dict[str, Any]:
+        """What another process may know: hashes of texts differ from process to process."""
+        return {name: value for name, value in self.__dict__.items() if name != "_hash"}
+
+    kind.__hash__ = hashed  # type: ignore[assignment]
+    kind.__getstate__ = state  # type: ignore[method-assign, assignment]
+    return kind
+
+
+@_hashed_once
 @dataclass(frozen=True)
 class Const:
     """A literal; a float is already rounded to float32."""
@@ -23,6 +48,7 @@ class Const:
     value: float | int | bool
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Var:
     """A parameter or a local."""
@@ -31,6 +57,7 @@ class Var:
     name: str
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Unary:
     """`-`, `~` or `not`."""
@@ -40,6 +67,7 @@ class Unary:
     operand: Expr
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Binary:
     """An operator of codegen.ops, named as in the source (`+`, `and`, `<`)."""
@@ -50,6 +78,7 @@ class Binary:
     right: Expr
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Builtin:
     """A built-in of the op registry."""
@@ -59,6 +88,7 @@ class Builtin:
     args: tuple[Expr, ...]
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Call:
     """A call of a library function."""
@@ -68,6 +98,7 @@ class Call:
     args: tuple[Expr, ...]
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Construct:
     """A vector from scalars (one: splat) or shorter vectors, a struct or an array from its parts in order."""
@@ -76,6 +107,7 @@ class Construct:
     args: tuple[Expr, ...]
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Convert:
     """A conversion between scalar number types: exact or rounded; to integers truncating."""
@@ -84,6 +116,7 @@ class Convert:
     operand: Expr
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Member:
     """A field of a struct value."""
@@ -93,6 +126,7 @@ class Member:
     name: str
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Swizzle:
     """Components of a vector, read only; one letter gives a scalar."""
@@ -102,6 +136,7 @@ class Swizzle:
     components: str
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Index:
     """An element of an array by an i32 or u32 that is one of its numbers."""
@@ -111,6 +146,7 @@ class Index:
     index: Expr
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Select:
     """`if_true if condition else if_false`; both sides are evaluated."""
@@ -124,6 +160,7 @@ class Select:
 Expr = Const | Var | Unary | Binary | Builtin | Call | Construct | Convert | Member | Swizzle | Index | Select
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Let:
     """The first assignment of a local; `mutable` where it is assigned again."""
@@ -134,6 +171,7 @@ class Let:
     line: int = field(default=0, compare=False)
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Assign:
     """A later assignment."""
@@ -143,6 +181,7 @@ class Assign:
     line: int = field(default=0, compare=False)
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class If:
     """A branch on a scalar condition."""
@@ -153,6 +192,7 @@ class If:
     line: int = field(default=0, compare=False)
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class For:
     """`for name in range(start, stop)` with constant bounds; name is an i32.
@@ -173,6 +213,7 @@ class For:
         return I32 if self.limit is None else self.limit.type
 
 
+@_hashed_once
 @dataclass(frozen=True)
 class Return:
     """The function's value."""
@@ -239,42 +280,48 @@ class Function:
         return any(p.type == TEXTURE for p in self.parameters)
 
 
+def _none(e: Any) -> tuple[Expr, ...]:
+    return ()
+
+
+_CHILDREN: dict[type, Callable[[Any], tuple[Expr, ...]]] = {
+    Unary: lambda e: (e.operand,),
+    Binary: lambda e: (e.left, e.right),
+    Builtin: lambda e: e.args,
+    Call: lambda e: e.args,
+    Construct: lambda e: e.args,
+    Convert: lambda e: (e.operand,),
+    Member: lambda e: (e.value,),
+    Swizzle: lambda e: (e.value,),
+    Index: lambda e: (e.value, e.index),
+    Select: lambda e: (e.condition, e.if_true, e.if_false),
+}
+_OVER: dict[type, Callable[[Any, tuple[Expr, ...]], Expr]] = {
+    Unary: lambda e, parts: Unary(e.type, e.op, *parts),
+    Binary: lambda e, parts: Binary(e.type, e.op, *parts),
+    Builtin: lambda e, parts: Builtin(e.type, e.op, parts),
+    Call: lambda e, parts: Call(e.type, e.function, parts),
+    Construct: lambda e, parts: Construct(e.type, parts),
+    Convert: lambda e, parts: Convert(e.type, *parts),
+    Member: lambda e, parts: Member(e.type, parts[0], e.name),
+    Swizzle: lambda e, parts: Swizzle(e.type, parts[0], e.components),
+    Index: lambda e, parts: Index(e.type, *parts),
+    Select: lambda e, parts: Select(e.type, *parts),
+}
+"""Tables, since these two are what every pass does most."""
+
+
 def children(e: Expr) -> tuple[Expr, ...]:
     """The direct operands of an expression, in evaluation order."""
-    match e:
-        case Unary() | Convert():
-            return (e.operand,)
-        case Binary():
-            return (e.left, e.right)
-        case Builtin() | Call() | Construct():
-            return e.args
-        case Member() | Swizzle():
-            return (e.value,)
-        case Index():
-            return (e.value, e.index)
-        case Select():
-            return (e.condition, e.if_true, e.if_false)
-        case _:
-            return ()
+    return _CHILDREN.get(type(e), _none)(e)
 
 
 def rebuild(e: Expr, parts: tuple[Expr, ...]) -> Expr:
-    """The same expression over other operands."""
-    match e:
-        case Unary() | Convert():
-            return replace(e, operand=parts[0])
-        case Binary():
-            return replace(e, left=parts[0], right=parts[1])
-        case Builtin() | Call() | Construct():
-            return replace(e, args=parts)
-        case Member() | Swizzle():
-            return replace(e, value=parts[0])
-        case Index():
-            return replace(e, value=parts[0], index=parts[1])
-        case Select():
-            return replace(e, condition=parts[0], if_true=parts[1], if_false=parts[2])
-        case _:
-            return e
+    """The same expression over other operands; itself where these are its own."""
+    old = children(e)
+    if len(old) == len(parts) and all(map(is_, old, parts)):
+        return e
+    return _OVER[type(e)](e, parts)
 
 
 def map_expr(e: Expr, change: Callable[[Expr], Expr]) -> Expr:

@@ -14,6 +14,7 @@ Nothing is re-associated but products with powers of two, which are exact.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -180,17 +181,17 @@ CONDITIONS: dict[str, Callable[..., bool]] = {
 }
 
 
+Outlines = tuple[tuple[str, ...], ...]
+
+
 def identities(ranges: Ranges, kinds: frozenset[str]) -> Rule:
     """The rule that applies the rows of these kinds."""
-    by_operation: dict[str, list[Row]] = {}
-    for row in ROWS:
-        outer = patterns.parse(row.pattern)
-        assert isinstance(outer, patterns.Operation)
-        if row.kind in kinds:
-            by_operation.setdefault(outer.op, []).append(row)
 
     def rule(values: Values, e: ir.Expr) -> Rewrite | None:
-        for row in by_operation.get(patterns.operation(e) or "", ()):
+        operation = patterns.operation(e)
+        if operation is None:
+            return None
+        for row in _candidates(kinds, operation, patterns.outlines(e)):
             for found in patterns.match(patterns.parse(row.pattern), e):
                 if all(_holds(values, ranges, condition, found) for condition in row.when):
                     value = patterns.make(patterns.parse(row.replacement), found, values, e.type)
@@ -198,6 +199,18 @@ def identities(ranges: Ranges, kinds: frozenset[str]) -> Rule:
         return None
 
     return rule
+
+
+@functools.cache
+def _candidates(kinds: frozenset[str], operation: str, outlines: Outlines) -> list[Row]:
+    """The rows of these kinds that a value with these operands may fit."""
+    found = []
+    for row in ROWS:
+        outer = patterns.parse(row.pattern)
+        assert isinstance(outer, patterns.Operation)
+        if row.kind in kinds and outer.op == operation and patterns.may_match(outer, outlines):
+            found.append(row)
+    return found
 
 
 def _holds(values: Values, ranges: Ranges, condition: str, found: patterns.Found) -> bool:

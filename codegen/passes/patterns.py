@@ -95,6 +95,21 @@ def operation(e: ir.Expr) -> str | None:
     return "select" if isinstance(e, ir.Select) else None
 
 
+def outlines(e: ir.Expr) -> tuple[tuple[str, ...], ...]:
+    """What the operands of a value are, an operation, "number" or "", in each order that is tried."""
+    given = tuple(
+        "number" if constant_components(x) is not None else operation(x) or "" for x in ir.children(e)
+    )
+    return (given, given[::-1]) if operation(e) in COMMUTATIVE else (given,)
+
+
+def may_match(pattern: Operation, of: tuple[tuple[str, ...], ...]) -> bool:
+    """Whether a value with these outlines may fit a pattern: a quick look before `match`."""
+    kinds = {Name: "", Number: "number"}
+    wanted = [p.op if isinstance(p, Operation) else kinds[type(p)] for p in pattern.operands]
+    return any(all(p in ("", x) for p, x in zip(wanted, given, strict=False)) for given in of)
+
+
 def match(pattern: Pattern, e: ir.Expr, found: Found | None = None) -> Iterator[dict[str, ir.Expr]]:
     """Every way in which a value fits a pattern: name -> value."""
     if isinstance(pattern, Name):

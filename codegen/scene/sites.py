@@ -6,6 +6,7 @@ calls of one function are two sites, since what is known of their arguments diff
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -53,8 +54,8 @@ def sites(
     """
 
     def visit(f: ir.Function, path: Path, known: Known) -> Iterator[Site]:
-        definitions = {s.name: s.value for s in ir.statements(f.body) if isinstance(s, ir.Let)}
-        for k, call in enumerate(_calls(f)):
+        definitions, calls = _definitions(f.body), _calls(f.body)
+        for k, call in enumerate(calls):
             here = (*path, k)
             callee = library.function(choices.get(here, call.function))
             passed = _passed(callee, call, known, definitions)
@@ -81,14 +82,8 @@ def _is_whole(callee: ir.Function, passed: Known) -> bool:
 def variants_of(library: Library, f: ir.Function) -> list[str]:
     """Functions that may be called in this one's place: the base and its variants with equal parameters."""
     base = f.base if f.kind == "variant" and f.base else f.name
-    module = library.resolver.module_of(base)
     # Variants stand in their base's file or in one named after it: only these are parsed.
-    names = [
-        n
-        for n in library.resolver.function_names()
-        if (found := library.resolver.module_of(n)) == module or found.startswith(f"{module}_")
-    ]
-    family = [library.function(n) for n in names]
+    family = map(library.function, library.resolver.family(base))
     shape = [(p.name, p.type) for p in f.parameters]
     return [
         g.name
@@ -169,7 +164,14 @@ def _range(e: ir.Expr, known: Known, definitions: Mapping[str, ir.Expr]) -> tupl
             return None
 
 
-def _calls(f: ir.Function) -> list[ir.Call]:
+@functools.lru_cache(4096)
+def _definitions(body: tuple[ir.Stmt, ...]) -> Mapping[str, ir.Expr]:
+    """The locals of a function with their values."""
+    return {s.name: s.value for s in ir.statements(body) if isinstance(s, ir.Let)}
+
+
+@functools.lru_cache(4096)
+def _calls(body: tuple[ir.Stmt, ...]) -> list[ir.Call]:
     """The calls of a function in the order in which `_with_calls` meets them."""
     found: list[ir.Call] = []
 
@@ -178,7 +180,7 @@ def _calls(f: ir.Function) -> list[ir.Call]:
             found.append(e)
         return e
 
-    ir.map_body(f.body, note)
+    ir.map_body(body, note)
     return found
 
 
@@ -189,7 +191,7 @@ def substituted(library: Library, root: ir.Function, choices: Choices, name: str
     def visit(f: ir.Function, path: Path, new_name: str) -> None:
         changed = {p[len(path)] for p in choices if p[: len(path)] == path and len(p) > len(path)}
         names: dict[int, str] = {}
-        for k, call in enumerate(_calls(f)):
+        for k, call in enumerate(_calls(f.body)):
             if k not in changed:
                 continue
             here = (*path, k)
