@@ -73,6 +73,18 @@ class Environment:
         return np.asarray(above * (1.0 - fy) + under * fy)
 
 
+class NearestTexel(Environment):
+    """The same map, looked up in its latitude-longitude texels without any filter."""
+
+    def radiance(self, w: Array, lod: npt.ArrayLike = 0.0) -> Array:
+        """The texel that each direction (..., 3) lies in, whatever the level."""
+        height, width = self.pixels.shape[:2]
+        uv = latlong.coordinates(w)
+        column = np.minimum((uv[..., 0] * width).astype(np.int64), width - 1)
+        row = np.minimum((uv[..., 1] * height).astype(np.int64), height - 1)
+        return np.asarray(self.pixels[row, column])
+
+
 class MapSampler:
     """Directions in proportion to a map's luminance: a texel by inverse distribution, uniform within it."""
 
@@ -82,19 +94,18 @@ class MapSampler:
         self.shape = luminance.shape
         self.share = luminance / total if total > 0.0 else np.full(self.shape, 1.0 / luminance.size)
         self.rows = np.cumsum(self.share.sum(axis=1))
+        self.columns = np.cumsum(self.share, axis=1)
 
     def sample(self, u: Array) -> Array:
         """Directions (n, 3) of pairs (n, 2): u.y chooses the row, u.x the column."""
         height, width = self.shape
         target = u[:, 1] * self.rows[-1]
         row = np.minimum(np.searchsorted(self.rows, target, side="right"), height - 1)
-        y = row + _within(self.rows, row, target)
-        columns = np.cumsum(self.share[row], axis=1)
+        y = row + _within(np.broadcast_to(self.rows, (len(u), height)), row, target)
+        columns = self.columns[row]
         aim = u[:, 0] * columns[:, -1]
         column = np.minimum((columns <= aim[:, None]).sum(axis=1), width - 1)
-        x = np.empty(len(u))
-        for k, (line, at, wanted) in enumerate(zip(columns, column, aim, strict=True)):
-            x[k] = at + _within(line, np.array([at]), np.array([wanted]))[0]
+        x = column + _within(columns, column, aim)
         theta, phi = np.pi * y / height, 2.0 * np.pi * (x / width - 0.5)
         return np.stack([np.sin(theta) * np.sin(phi), np.cos(theta), -np.sin(theta) * np.cos(phi)], axis=-1)
 
@@ -109,8 +120,9 @@ class MapSampler:
 
 
 def _within(running: Array, index: npt.NDArray[np.int64], target: Array) -> Array:
-    """Where between the running sums before and at `index` the target lies, in [0, 1)."""
-    before = np.where(index > 0, running[np.maximum(index - 1, 0)], 0.0)
-    step = running[index] - before
+    """Where between a row's running sums before and at `index` the target lies, in [0, 1)."""
+    every = np.arange(len(index))
+    before = np.where(index > 0, running[every, np.maximum(index - 1, 0)], 0.0)
+    step = running[every, index] - before
     part = (target - before) / np.where(step > 0.0, step, 1.0)
     return np.asarray(np.clip(part, 0.0, 1.0 - 1e-12))

@@ -75,25 +75,44 @@ def guarded(environment: Environment, view: View, lobe: Lobe, u: Array) -> Array
 
 
 def combined(
-    environment: Environment, view: View, lobe: Lobe, u: Array, sampler: MapSampler, *, power: bool = False
+    environment: Environment,
+    view: View,
+    lobe: Lobe,
+    u: Array,
+    others: Array,
+    sampler: MapSampler,
+    *,
+    power: bool = False,
 ) -> Array:
-    """Half of the samples from the lobe, half from the map, by the balance (or power) heuristic, unfiltered.
+    """Samples of the lobe and of the map together, by the balance or power heuristic, unfiltered.
 
     The map's samples are the same for every view, so an engine can bake them.
+
+    u       (n, 2) points of the lobe's samples; none: the map's alone
+    others  (m, 2) points of the map's samples; none: plain importance sampling of the lobe
     """
-    ours = max(len(u) // 2, 1)
-    theirs = max(len(u) - ours, 1)
+    ours, theirs = len(u), len(others)
     share_of = mis_power if power else mis_balance
-    world, pdf, weight = _samples(view, lobe, sequence(ours))
-    share = share_of(ours, pdf, theirs, sampler.pdf(world))
-    total = (environment.radiance(world) * (weight * share)[..., None]).mean(axis=1)
-    others = sampler.sample(sequence(theirs))
-    local = np.stack([view.to_local(k, others) for k in range(len(view))])
-    density = np.broadcast_to(sampler.pdf(others), local.shape[:2])
-    value = lobe.value(local, view.v[:, None, :])
-    share = share_of(theirs, density, ours, lobe.pdf(local, view.v[:, None, :]))
-    mine = np.where(density > 0.0, value * share / np.where(density > 0.0, density, 1.0), 0.0)
-    return np.asarray(total + (environment.radiance(others)[None] * mine[..., None]).mean(axis=1))
+    total = np.zeros((len(view), 3))
+    if ours:
+        world, pdf, weight = _samples(view, lobe, u)
+        share = share_of(ours, pdf, theirs, sampler.pdf(world))
+        total += (environment.radiance(world) * (weight * share)[..., None]).mean(axis=1)
+    if theirs:
+        world = sampler.sample(others)
+        local = np.stack([view.to_local(k, world) for k in range(len(view))])
+        density = np.broadcast_to(sampler.pdf(world), local.shape[:2])
+        share = share_of(theirs, density, ours, lobe.pdf(local, view.v[:, None, :]))
+        value = lobe.value(local, view.v[:, None, :])
+        weight = np.where(density > 0.0, value * share / np.where(density > 0.0, density, 1.0), 0.0)
+        total += (environment.radiance(world)[None] * weight[..., None]).mean(axis=1)
+    return total
+
+
+def halves(count: int) -> tuple[Array, Array]:
+    """Points for that many samples in all, half of the lobe and half of the map."""
+    ours = max(count // 2, 1)
+    return sequence(ours), sequence(max(count - ours, 1))
 
 
 def _samples(view: View, lobe: Lobe, u: Array) -> tuple[Array, Array, Array]:

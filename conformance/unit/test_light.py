@@ -13,7 +13,7 @@ import pytest
 
 from codegen.maps import latlong, prefilter
 from conformance.light import estimators
-from conformance.light.environment import Environment, MapSampler
+from conformance.light.environment import Environment, MapSampler, NearestTexel
 from conformance.light.lobes import Lobe, PowerLobe, View, about, along_x
 from conformance.reference.lobes import LOBES
 from conformance.reference.sampling import sphere_uniform
@@ -67,7 +67,7 @@ def test_every_estimator_of_every_lobe_agrees_with_quadrature_on_a_smooth_sky(na
         "plain": estimators.plain(here, view, chosen, u),
         "filtered": estimators.filtered(here, view, chosen, u),
         "guarded": estimators.guarded(here, view, chosen, u),
-        "combined": estimators.combined(here, view, chosen, u, MapSampler(here)),
+        "combined": estimators.combined(here, view, chosen, *estimators.halves(2048), MapSampler(here)),
         "grid": estimators.grid(here, view, chosen, 32),
     }
     # 2048 points of a sequence whose discrepancy falls like log(n) / n, and the map's own resampling.
@@ -92,7 +92,7 @@ def test_black_tiny_and_bright_maps_stay_finite(name: str, pixels: np.ndarray) -
         for found in (
             estimators.plain(here, view, chosen, u),
             estimators.filtered(here, view, chosen, u),
-            estimators.combined(here, view, chosen, u, MapSampler(here)),
+            estimators.combined(here, view, chosen, *estimators.halves(count), MapSampler(here)),
         ):
             assert np.isfinite(found).all() and (found >= 0.0).all()
             assert pixels.any() or not found.any()
@@ -244,6 +244,63 @@ def prefiltering_errs_as_published(row: dict[str, Any]) -> None:
         assert near(estimators.rms(lookup.radiance(power_views().normal), right), expected)
 
 
+RANDOM_DEFAULT = {("dawn", "10")}
+
+
+@pytest.mark.parametrize(
+    ("row", "exponent"),
+    [
+        pytest.param(
+            row,
+            exponent,
+            marks=[] if (row["map"], exponent) in RANDOM_DEFAULT else [pytest.mark.nightly],
+            id=f"{row['map']}-{exponent}",
+        )
+        for row in FIGURES["random"]["rows"]
+        for exponent in row["lobe"]
+    ],
+)
+def test_random_samples_of_lobe_and_map_err_as_published(row: dict[str, Any], exponent: str) -> None:
+    found = of_random_samples(row["map"], float(exponent))
+    for way, batches in found.items():
+        margin = 1.0 + FIGURES["random"]["margin"][way]
+        assert batches.min() / margin <= row[way][exponent] <= batches.max() * margin, found
+
+
+def test_lobe_and_map_together_gain_where_neither_is_much_better_alone() -> None:
+    found = of_random_samples("dawn", 10.0)
+    error = {way: float(np.sqrt(np.mean(batches**2))) for way, batches in found.items()}
+    assert max(error["balance"], error["power"]) < min(error["lobe"], error["map_alone"]), error
+
+
+@cache
+def of_random_samples(name: str, exponent: float) -> dict[str, np.ndarray]:
+    """Errors of batches of runs with 40 random samples, by how these are divided between lobe and map."""
+    here = NearestTexel(environment(name).pixels, size=1)
+    r = power_views().normal[::4]
+    view = about(r, np.broadcast_to(np.array([0.0, 0.0, 1.0]), r.shape))
+    right = prefilter.convolved(here.pixels, exponent, r)
+    ways = {
+        "lobe": (40, 0, False),
+        "map_alone": (0, 40, False),
+        "balance": (20, 20, False),
+        "power": (20, 20, True),
+    }
+    allowed, generator = FIGURES["random"], np.random.default_rng(23)
+    squares: dict[str, list[float]] = {way: [] for way in ways}
+    for _ in range(allowed["batches"] * allowed["runs"]):
+        for way, (ours, theirs, power) in ways.items():
+            points = generator.random((ours, 2)), generator.random((theirs, 2))
+            estimate = estimators.combined(
+                here, view, LOBE["power"](exponent), *points, sampler(name), power=power
+            )
+            squares[way].append(estimators.rms(estimate, right) ** 2)
+    return {
+        way: np.sqrt(np.reshape(found, (allowed["batches"], -1)).mean(axis=1))
+        for way, found in squares.items()
+    }
+
+
 def test_filtering_keeps_its_promises_on_dawn() -> None:
     wide = FIGURES["promised"]["filtered_dawn"]
     exponent = float(wide["plain_exponent"])
@@ -261,7 +318,7 @@ def test_filtering_keeps_its_promises_on_dawn_for_sharper_lobes() -> None:
 
 
 def joined(here: Environment, view: View, chosen: Lobe, u: np.ndarray) -> np.ndarray:
-    return estimators.combined(here, view, chosen, u, sampler("studio"))
+    return estimators.combined(here, view, chosen, *estimators.halves(len(u)), sampler("studio"))
 
 
 @pytest.mark.parametrize(
