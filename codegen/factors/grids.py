@@ -1,4 +1,4 @@
-"""Square grids with bilinear interpolation, as sparse rows of a least-squares problem and as lookups."""
+"""Square grids with bilinear interpolation, as sparse rows of a least-squares problem."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy import sparse
+
+from codegen.maps.bilinear import neighbours
 
 Array = npt.NDArray[np.float64]
 
@@ -21,13 +23,10 @@ class Taps:
 
 def taps(uv: Array, size: int) -> Taps:
     """Lookups at coordinates (n, 2) in [0, 1], texel centres at (k + 0.5) / size, clamped at the edge."""
-    place = np.clip(uv * size - 0.5, 0.0, size - 1.0)
-    corner = np.minimum(np.floor(place), max(size - 2, 0)).astype(np.int64)
-    fx, fy = (place - corner).T
-    x, y = corner.T
-    right, below = np.minimum(x + 1, size - 1), np.minimum(y + 1, size - 1)
-    texels = np.stack([y * size + x, y * size + right, below * size + x, below * size + right], axis=1)
-    return Taps(texels, np.stack([(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy], axis=1))
+    (left, right, fx), (top, bottom, fy) = (neighbours(c * size - 0.5, size) for c in uv.T)
+    texels = np.stack([top * size + left, top * size + right, bottom * size + left, bottom * size + right])
+    weights = np.stack([(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy])
+    return Taps(texels.T, weights.T)
 
 
 def rows(found: Taps, size: int) -> sparse.csr_array:
@@ -35,13 +34,6 @@ def rows(found: Taps, size: int) -> sparse.csr_array:
     count = len(found.texels)
     at = np.repeat(np.arange(count), 4)
     return sparse.csr_array((found.weights.ravel(), (at, found.texels.ravel())), shape=(count, size * size))
-
-
-def lookup(image: Array, uv: Array) -> Array:
-    """Bilinear lookups (n, channels) in an image (size, size, channels) at coordinates (n, 2)."""
-    found = taps(uv, image.shape[0])
-    flat = image.reshape(-1, image.shape[2])
-    return np.asarray(np.einsum("nk,nkc->nc", found.weights, flat[found.texels]))
 
 
 def bends(size: int) -> sparse.csr_array:

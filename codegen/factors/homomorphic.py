@@ -16,8 +16,9 @@ from scipy import sparse
 from scipy.sparse.linalg import lsmr
 
 from codegen.errors import UserError
-from codegen.factors.grids import bends, lookup, rows, taps
+from codegen.factors.grids import bends, rows, taps
 from codegen.factors.samples import FEWEST, Samples
+from codegen.maps.bilinear import lookup
 
 Array = npt.NDArray[np.float64]
 SIZES = (2, 512)

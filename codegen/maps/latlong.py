@@ -8,6 +8,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from codegen.maps.bilinear import lookup
+
 Array = npt.NDArray[np.float64]
 
 
@@ -36,14 +38,4 @@ def solid_angles(height: int, width: int) -> Array:
 
 def bilinear(pixels: npt.NDArray[np.floating], uv: Array) -> Array:
     """Bilinear lookups at (..., 2) coordinates in a (height, width, channels) map; u wraps, v clamps."""
-    height, width = pixels.shape[:2]
-    x, y = uv[..., 0] * width - 0.5, np.clip(uv[..., 1] * height - 0.5, 0.0, height - 1.0)
-    column, row = np.floor(x), np.minimum(np.floor(y), max(height - 2, 0))
-    fx, fy = (x - column)[..., None], (y - row)[..., None]
-    left, right = column.astype(np.int64) % width, (column.astype(np.int64) + 1) % width
-    top = row.astype(np.int64)
-    bottom = np.minimum(top + 1, height - 1)
-    source = pixels.astype(np.float64)
-    above = source[top, left] * (1.0 - fx) + source[top, right] * fx
-    below = source[bottom, left] * (1.0 - fx) + source[bottom, right] * fx
-    return np.asarray(above * (1.0 - fy) + below * fy)
+    return lookup(pixels, uv, repeat_u=True)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.errors import UserError
+from codegen.maps.bilinear import at_places
 from codegen.tables.axes import Axis
 
 Array = npt.NDArray[np.float64]
@@ -37,14 +38,8 @@ class Table:
     def value(self, a: Array, b: Array) -> Array:
         """Bilinear lookups at arguments."""
         height, width = self.values.shape
-        place_x, place_y = self.x.coordinate(a) * (width - 1), self.y.coordinate(b) * (height - 1)
-        column = np.minimum(np.floor(place_x), width - 2).astype(np.int64)
-        row = np.minimum(np.floor(place_y), height - 2).astype(np.int64)
-        fx, fy = place_x - column, place_y - row
-        v = self.values.astype(np.float64)
-        above = v[row, column] * (1.0 - fx) + v[row, column + 1] * fx
-        below = v[row + 1, column] * (1.0 - fx) + v[row + 1, column + 1] * fx
-        return np.asarray(above * (1.0 - fy) + below * fy)
+        x, y = self.x.coordinate(a) * (width - 1), self.y.coordinate(b) * (height - 1)
+        return at_places(self.values[:, :, None], x, y)[..., 0]
 
 
 def tabulate(x: Axis, y: Axis, function: Evaluated, budget: float, largest: int = LARGEST) -> Table:
