@@ -13,6 +13,7 @@ from codegen.errors import UserError
 from codegen.evaluate.arrays import Array, Value, arithmetic, convert_inputs
 from codegen.evaluate.interpreter import with_edges
 from codegen.evaluate.textures import as_map
+from codegen.ir.nodes import Function
 from codegen.ir.types import BOOL, F16, F32, Scalar, Struct, Type, Vector, element_of, leaves
 from codegen.kernels import PLAIN, KernelOptions, called_type, kernel, literal_cases, literal_kernel
 from codegen.library import Library
@@ -61,13 +62,19 @@ def execute(
         out = _execute_literals(library, name, function.returns, arrays, count, runtime, options)
         return unflatten(function.returns, out)
     program = kernel(library, name, runtime.device.target, options)
-    arrays = with_edges(function, arrays)
-    words = flatten([arrays[p.name] for p in function.parameters], count)
-    maps = [t for p in function.parameters if (t := as_map(arrays[p.name])) is not None]
+    words, maps = on_device(function, arrays, count)
     # Runtimes that know no maps are asked as they always were.
-    further = {"textures": [texture_data(t.levels, t.repeat_u, t.repeat_v) for t in maps]} if maps else {}
+    further = {"textures": maps} if maps else {}
     out = runtime.run(program, words, len(leaves(function.returns)), **further)
     return unflatten(function.returns, out)
+
+
+def on_device(function: Function, arrays: Mapping[str, Value], count: int) -> tuple[Words, list[Any]]:
+    """The words and the maps that a kernel of a function takes, of arguments as convert_inputs gives them."""
+    held = with_edges(function, dict(arrays))
+    words = flatten([held[p.name] for p in function.parameters], count)
+    maps = [t for p in function.parameters if (t := as_map(held[p.name])) is not None]
+    return words, [texture_data(t.levels, t.repeat_u, t.repeat_v) for t in maps]
 
 
 def _check_precision(runtime: Runtime, options: KernelOptions) -> None:

@@ -90,10 +90,29 @@ def measure(
     returns  the data of each that is here, as recorded files hold it; and by label why each other is not
     errors   UserError where a worker fails
     """
-    queues = schedule(where, max(1, min(options.at_once, os.cpu_count() or 1)), options.seconds)
+    return side_by_side(
+        where,
+        options.at_once,
+        options.seconds,
+        lambda p, seconds: _work(p, replace(options, seconds=seconds), watch),
+    )
+
+
+def side_by_side(
+    where: Sequence[Place],
+    at_once: int,
+    seconds: float,
+    work: Callable[[Place, float], dict[str, Any] | str],
+) -> tuple[list[dict[str, Any]], dict[str, str]]:
+    """What work gives for these drivers and their shares of the time, some of them side by side.
+
+    work     (place, seconds) -> data, or the reason why a driver is not here
+    returns  the data of each that is here; and by label why each other is not
+    """
+    queues = schedule(where, max(1, min(at_once, os.cpu_count() or 1)), seconds)
 
     def in_turn(queue: list[tuple[Place, float]]) -> dict[Place, dict[str, Any] | str]:
-        return {p: _work(p, replace(options, seconds=seconds), watch) for p, seconds in queue}
+        return {p: work(p, share) for p, share in queue}
 
     answers: dict[Place, dict[str, Any] | str] = {}
     with ThreadPoolExecutor(len(queues)) as pool:
@@ -116,7 +135,7 @@ def schedule(where: Sequence[Place], at_once: int, seconds: float) -> list[list[
     ]
 
 
-def _environment(place: Place, scratch: str) -> dict[str, str]:
+def environment(place: Place, scratch: str) -> dict[str, str]:
     """Variables of a worker; raises TargetUnavailable where a file is missing that its driver needs.
 
     scratch  an empty folder for PoCL's compiled kernels
@@ -127,15 +146,7 @@ def _environment(place: Place, scratch: str) -> dict[str, str]:
 
 def _work(place: Place, options: Options, watch: Watch) -> dict[str, Any] | str:
     """One worker's result, or the reason why the driver is not available."""
-    with tempfile.TemporaryDirectory(prefix="vair-") as scratch:
-        try:
-            environment = _environment(place, scratch)
-        except TargetUnavailable as reason:
-            return str(reason)
-        return _worker(place, options, watch, environment)
-
-
-def _worker(place: Place, o: Options, watch: Watch, environment: dict[str, str]) -> dict[str, Any] | str:
+    o = options
     job = Job(
         place.target,
         place.driver,
@@ -147,18 +158,38 @@ def _worker(place: Place, o: Options, watch: Watch, environment: dict[str, str])
         o.seconds,
         o.leave_out,
     )
+    return in_worker("conformance.bench.worker", place, job.to_json(), watch)
+
+
+def in_worker(module: str, place: Place, job: str, watch: Watch) -> dict[str, Any] | str:
+    """The result of a job on a driver in a process of its own, or the reason why the driver is not available.
+
+    module  what the process runs: it reads the job on standard input and says events, see worker.Channel
+    errors  UserError where it fails
+    """
+    with tempfile.TemporaryDirectory(prefix="vair-") as scratch:
+        try:
+            variables = environment(place, scratch)
+        except TargetUnavailable as reason:
+            return str(reason)
+        return _answer(module, place, job, watch, variables)
+
+
+def _answer(
+    module: str, place: Place, job: str, watch: Watch, variables: dict[str, str]
+) -> dict[str, Any] | str:
     before = list(os.getloadavg())
     process = subprocess.Popen(
-        [sys.executable, "-m", "conformance.bench.worker"],
+        [sys.executable, "-m", module],
         cwd=default_root().parent,
-        env=environment,
+        env=variables,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
     )
     assert process.stdin is not None and process.stdout is not None
     with process:
-        process.stdin.write(job.to_json())
+        process.stdin.write(job)
         process.stdin.close()
         answer: dict[str, Any] | str | None = None
         for line in process.stdout:
