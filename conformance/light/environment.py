@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from codegen.maps import latlong, mipmap, paraboloid
+from codegen.maps import bilinear, latlong, mipmap, paraboloid
 from codegen.maps.radiance import LUMINANCE, read_radiance
 from conformance.reference.maps import dual_paraboloid_solid_angle, dual_paraboloid_uv
 
@@ -62,15 +62,10 @@ class Environment:
         return out
 
     def _bilinear(self, level: int, face: npt.NDArray[np.int64], uv: Array) -> Array:
-        image = self.levels[level]
-        size = image.shape[1]
-        place = np.clip(uv * size - 0.5, 0.0, size - 1.0)
-        corner = np.minimum(np.floor(place), max(size - 2, 0)).astype(np.int64)
-        (fx, fy), (x, y) = np.moveaxis(place - corner, -1, 0)[..., None], np.moveaxis(corner, -1, 0)
-        right, below = np.minimum(x + 1, size - 1), np.minimum(y + 1, size - 1)
-        above = image[face, y, x] * (1.0 - fx) + image[face, y, right] * fx
-        under = image[face, below, x] * (1.0 - fx) + image[face, below, right] * fx
-        return np.asarray(above * (1.0 - fy) + under * fy)
+        out = np.zeros((len(uv), self.levels[level].shape[-1]))
+        for k, image in enumerate(self.levels[level]):
+            out[face == k] = bilinear.lookup(image, uv[face == k])
+        return out
 
 
 class NearestTexel(Environment):

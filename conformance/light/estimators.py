@@ -62,15 +62,18 @@ def plain(environment: Environment, view: View, lobe: Lobe, u: Array) -> Array:
 def filtered(environment: Environment, view: View, lobe: Lobe, u: Array, bias: float = 0.0) -> Array:
     """Colbert and Krivanek 2007: each sample looks up the level whose texel is as large as its share."""
     world, pdf, weight = _samples(view, lobe, u)
-    lod = lod_from_pdf(pdf, len(u), environment.texel_solid_angle(world[..., 2]), bias)
+    lod = lod_from_pdf(pdf, u.shape[-2], environment.texel_solid_angle(world[..., 2]), bias)
     return np.asarray((environment.radiance(world, lod) * weight[..., None]).mean(axis=1))
 
 
 def guarded(environment: Environment, view: View, lobe: Lobe, u: Array) -> Array:
-    """Filtered, but plain where the densest sample would look up less than level SHARP."""
+    """Filtered, but plain where a sample at the lobe's peak would look up less than level SHARP."""
+    count = u.shape[-2]
+    peak, densest, _ = _samples(view, lobe, np.zeros((1, 2)))
+    lowest = lod_from_pdf(densest, count, environment.texel_solid_angle(peak[..., 2]), 0.0)
     world, pdf, weight = _samples(view, lobe, u)
-    lod = lod_from_pdf(pdf, len(u), environment.texel_solid_angle(world[..., 2]), 0.0)
-    lod = np.where(lod.min(axis=1, keepdims=True) < SHARP, 0.0, lod)
+    lod = lod_from_pdf(pdf, count, environment.texel_solid_angle(world[..., 2]), 0.0)
+    lod = np.where(lowest < SHARP, 0.0, lod)
     return np.asarray((environment.radiance(world, lod) * weight[..., None]).mean(axis=1))
 
 
@@ -88,10 +91,10 @@ def combined(
 
     The map's samples are the same for every view, so an engine can bake them.
 
-    u       (n, 2) points of the lobe's samples; none: the map's alone
+    u       (n, 2) points of the lobe's samples, or as many for each view; none: the map's alone
     others  (m, 2) points of the map's samples; none: plain importance sampling of the lobe
     """
-    ours, theirs = len(u), len(others)
+    ours, theirs = u.shape[-2], len(others)
     share_of = mis_power if power else mis_balance
     total = np.zeros((len(view), 3))
     if ours:
@@ -116,8 +119,11 @@ def halves(count: int) -> tuple[Array, Array]:
 
 
 def _samples(view: View, lobe: Lobe, u: Array) -> tuple[Array, Array, Array]:
-    """World directions (n, m, 3), densities (n, m) and weights value / density (n, m)."""
-    pairs = np.broadcast_to(u, (len(view), *u.shape))
+    """World directions (n, m, 3), densities (n, m) and weights value / density (n, m).
+
+    u  (m, 2) points for every view, or (n, m, 2) for each its own
+    """
+    pairs = np.broadcast_to(u, (len(view), *u.shape[-2:]))
     local = lobe.sample(pairs, view.v[:, None, :])
     pdf, value = lobe.pdf(local, view.v[:, None, :]), lobe.value(local, view.v[:, None, :])
     return view.to_world(local), pdf, np.where(pdf > 0.0, value / np.where(pdf > 0.0, pdf, 1.0), 0.0)

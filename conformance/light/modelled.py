@@ -1,0 +1,104 @@
+"""The estimators in float64: errors against quadrature by map, lobe, estimator and number of samples."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.maps.radiance import read_radiance
+from conformance.light import estimators, plan
+from conformance.light.environment import Environment, MapSampler
+from conformance.light.lobes import Lobe, View
+from conformance.light.plan import Plan, Progress
+
+Array = npt.NDArray[np.float64]
+
+HOST_SIDE = "combined"
+"""Samples of lobe and map together: the map's distribution is made on the host."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Errors of one estimator: numbers of samples and relative root mean squares, as many."""
+
+    samples: tuple[int, ...]
+    rms: tuple[float, ...]
+
+
+def environments(chosen: Plan) -> dict[str, Environment]:
+    """The maps of a plan with their chains weighted by solid angle, as `vair env` writes them."""
+    found = {}
+    for name in chosen.maps:
+        found[name] = Environment(read_radiance(plan.path_of(name), clean=True), weighted=True)
+    return found
+
+
+def truths(chosen: Plan, lobe: Lobe, maps: Mapping[str, Environment]) -> dict[str, Array]:
+    """Quadrature over every texel at every place, (views, 3) by map. The maps are of one size."""
+    view, first = plan.frames(chosen), next(iter(maps.values()))
+    energy = np.concatenate([here.energy for here in maps.values()], axis=1)
+    rows = [lobe.value(view.to_local(k, first.directions), view.v[k]) @ energy for k in range(len(view))]
+    parts = np.split(np.stack(rows), len(maps), axis=1)
+    return dict(zip(maps, parts, strict=True))
+
+
+def curves(
+    chosen: Plan, lobe: Lobe, here: Environment, sampler: MapSampler, truth: Array
+) -> dict[str, Curve]:
+    """Every estimator's errors in float64.
+
+    truth  (views, 3), as truths gives them
+    """
+    view, right = plan.repeated(chosen), np.repeat(truth, chosen.shifts, axis=0)
+
+    def combined(here: Environment, view: View, lobe: Lobe, u: Array) -> Array:
+        ours, theirs = estimators.halves(u.shape[-2])
+        own = plan.points(chosen, len(ours))
+        return estimators.combined(here, view, lobe, own, theirs, sampler)
+
+    by_points: dict[str, Callable[..., Array]] = {
+        "monte_carlo": estimators.plain,
+        "filtered": estimators.filtered,
+        "guarded": estimators.guarded,
+        HOST_SIDE: combined,
+    }
+    found = {}
+    for name, estimate in by_points.items():
+        errors = [
+            estimators.rms(estimate(here, view, lobe, plan.points(chosen, count)), right)
+            for count in chosen.counts
+        ]
+        found[name] = Curve(chosen.counts, tuple(errors))
+    return {"grid": _grid(chosen, lobe, here, truth), **found}
+
+
+def _grid(chosen: Plan, lobe: Lobe, here: Environment, truth: Array) -> Curve:
+    """Grids of a power of two of rows and twice as many columns, not turned by the shifts."""
+    view = plan.frames(chosen)
+    rows = [2**k for k in range(1, 8) if min(chosen.counts) <= 2 * 4**k <= max(chosen.counts)]
+    errors = [estimators.rms(estimators.grid(here, view, lobe, r), truth) for r in rows]
+    return Curve(tuple(2 * r * r for r in rows), tuple(errors))
+
+
+def slope(curve: Curve) -> float:
+    """Power of the number of samples with which the error falls, by least squares; nan for one point."""
+    if len(curve.samples) < 2 or min(curve.rms) <= 0.0:
+        return math.nan
+    return float(np.polyfit(np.log(curve.samples), np.log(curve.rms), 1)[0])
+
+
+def measure(chosen: Plan, progress: Progress = lambda step: None) -> dict[str, dict[str, dict[str, Curve]]]:
+    """Curves by map, lobe and estimator."""
+    maps = environments(chosen)
+    samplers = {name: MapSampler(here) for name, here in maps.items()}
+    found: dict[str, dict[str, dict[str, Curve]]] = {name: {} for name in maps}
+    for lobe in chosen.lobes:
+        progress(str(lobe))
+        truth = truths(chosen, lobe, maps)
+        for name, here in maps.items():
+            found[name][str(lobe)] = curves(chosen, lobe, here, samplers[name], truth[name])
+    return found
