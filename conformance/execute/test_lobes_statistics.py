@@ -126,7 +126,7 @@ def test_weights_are_bounded(runtime: TimedRuntime, row: list[Any]) -> None:
     for v in views():
         found, l = weights(evaluator, u, v)
         assert np.isfinite(found).all()
-        np.testing.assert_allclose(np.linalg.norm(l, axis=1), 1.0, atol=1e-6)
+        np.testing.assert_allclose(np.linalg.norm(l, axis=1), 1.0, atol=CHECKS["length"]["tolerance"])
         assert found.max() <= row[2] * (1.0 + CHECKS["weight"]["slack"]), (v, found.max())
         first = evaluator.sample(np.zeros((1, 2)), v)
         assert evaluator.pdf(first, v)[0] > 0.0, "u = (0, 0) must have a density"

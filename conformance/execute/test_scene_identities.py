@@ -30,6 +30,10 @@ CHECKS: dict[str, Any] = tomllib.loads(
 )
 LIBRARY = load_library()
 SEED = 20_100
+EDGE_ON = 1e-3
+"""Sine of the angle between view and fin below which no plane holds both."""
+ABOVE_RIM = 1e-3
+"""Height on a paraboloid map above which its derivative exists: the two maps meet at 0."""
 MAP_FAMILIES = ("uniform", "axis_aligned", "near_axes", "map_equators", "map_poles", "latlong_seam")
 
 
@@ -129,7 +133,7 @@ def test_fins_are_never_above_the_slides_bound(runtime: TimedRuntime, family: st
     # the surface normal in the plane of v and n_fin is the worst: |cos(v, n_fin)| = sin(v, n)
     across = np.cross(np.cross(v, n_fin), n_fin)
     size = np.linalg.norm(across, axis=1, keepdims=True)
-    n = np.where(size > 1e-3, across / np.maximum(size, 1e-3), np.roll(n_fin, 1, axis=1))
+    n = np.where(size > EDGE_ON, across / np.maximum(size, EDGE_ON), np.roll(n_fin, 1, axis=1))
     n -= np.sum(n * n_fin, axis=1, keepdims=True) * n_fin
     n /= np.linalg.norm(n, axis=1, keepdims=True)
     fin = call("fin_opacity", {"v": v, "n_fin": n_fin})
@@ -214,4 +218,4 @@ def test_solid_angles_are_jacobians(runtime: TimedRuntime) -> None:
     agree(texel * 4096.0**2, maps.latlong_direction)
     z = paraboloid(uv)[:, 2]
     inputs = {"z": z, "width": ones, "height": ones, "border": ones}
-    agree(call("dual_paraboloid_solid_angle", inputs), paraboloid, z > 1e-3)
+    agree(call("dual_paraboloid_solid_angle", inputs), paraboloid, z > ABOVE_RIM)

@@ -31,6 +31,7 @@ from conformance.cases.domains import UNIT_TOLERANCE
 from conformance.cases.drawing import draw
 from conformance.unit.support.dialects import DIALECTS, ONE_PER_TARGET, dialect_id, validate
 from conformance.unit.support.lights import LANES, LIGHTS, inputs, lambert_sum
+from conformance.unit.support.tolerances import tolerance
 from conformance.unit.support.trees import no_function
 
 LIBRARY = load_library()
@@ -60,7 +61,7 @@ def test_sum_over_an_array_and_its_intervals() -> None:
     )
     double = evaluate(EXTENDED, "lambert_sum", x, "float64")
     assert isinstance(double, np.ndarray)
-    np.testing.assert_allclose(double, exact, rtol=1e-12)
+    np.testing.assert_allclose(double, exact, rtol=tolerance("summed"))
     single = evaluate(EXTENDED, "lambert_sum", x)
     for table in TABLES:
         allowed = permitted(EXTENDED, "lambert_sum", x, table)

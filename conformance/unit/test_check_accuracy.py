@@ -21,6 +21,7 @@ from conformance.check.accuracy import CODE_STEPS, DIFFERENCE, RELATIVE, ULP, Ac
 from conformance.check.draws import draw
 from conformance.check.sample import together
 from conformance.picture.tone import srgb_decode
+from conformance.unit.support.tolerances import floor, tolerance
 
 FLOOR = 0.5 / (255.0 * 12.92)
 """Half a step of an 8-bit sRGB code at black."""
@@ -49,7 +50,7 @@ def test_measure_fits_the_function(name: str, measures: list[str]) -> None:
 def test_shades_are_named_by_functions_that_exist() -> None:
     public = load_library().public
     table = accuracy._table()
-    assert table["relative"]["floor"] == pytest.approx(FLOOR, rel=0.02)
+    assert table["relative"]["floor"] == pytest.approx(FLOOR, rel=tolerance("two_digits"))
     for glob in table["shades"]["functions"]:
         found = [name for name in public if fnmatchcase(name, glob)]
         assert found, glob
@@ -81,8 +82,9 @@ def f64(*values: Any) -> Any:
     ids=["ULP", "ULP of infinity", "relative", "vectors", "words", "steps", "steps beyond white", "structs"],
 )
 def test_errors_in_each_measure(measure: str, got: Any, expected: Any, errors: list[float]) -> None:
-    floor = 1.5e-4 if measure == RELATIVE else 0.0
-    assert error(Accuracy(measure, floor), got, expected) == pytest.approx(errors, rel=1e-5, abs=1e-4)
+    smallest = 1.5e-4 if measure == RELATIVE else 0.0
+    found = error(Accuracy(measure, smallest), got, expected)
+    assert found == pytest.approx(errors, rel=tolerance("errors_of_float32"), abs=floor("errors_of_float32"))
 
 
 def test_figures_are_of_the_lanes_that_count() -> None:

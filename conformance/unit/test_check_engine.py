@@ -25,6 +25,7 @@ from conformance.check.failure import FINITE
 from conformance.check.result import FunctionResult
 from conformance.reference import PROPERTY_ONLY
 from conformance.unit.support.sources import library_of
+from conformance.unit.support.tolerances import tolerance
 
 SOURCE = "def probe(x: X) -> f32:\n    return x\n"
 BOUND = '[[probe]]\nmeasure = "absolute"\nbound = 0.5\ndomain = "{}"\norigin = "{}"\n{}\n'
@@ -92,7 +93,7 @@ def test_figures_are_over_all_draws(check: Check) -> None:
     assert found.lanes == result.lanes == 1002
     assert found.measured == 0.375
     assert found.worst == "x = 5000 [459c4000]"
-    assert found.median == pytest.approx(float(np.median(errors)), rel=1e-15)
+    assert found.median == pytest.approx(float(np.median(errors)), rel=tolerance("rounded"))
     assert found.p999 == sorted(errors)[1000]
     assert found.bound == "absolute <= 0.5: everywhere"
     assert 0.0 < result.seconds < 600.0

@@ -30,6 +30,7 @@ from conformance.check.report import interval_text
 from conformance.check.result import FunctionResult
 from conformance.mutation.fake_backend import SINE_ERROR, fake_backend
 from conformance.unit.support.sources import library_of
+from conformance.unit.support.tolerances import tolerance
 
 INF, NAN = np.inf, np.nan
 LOOSE = '[[probe]]\nmeasure = "absolute"\nbound = 1e30\ndomain = "all"\norigin = "derived"\n'
@@ -146,15 +147,15 @@ def test_either_verdict_may_be_bad_alone(
         answer = "NO" if PERMITTED in failed else "yes"
         assert f"permitted  {answer}: wgsl permits 3.29999995 to 3.30000019" in told
         assert ("MISSED" in told) == (WITHIN in failed)
-        assert float(failure.exact) == pytest.approx(3.0 * float(X), rel=1e-15)
+        assert float(failure.exact) == pytest.approx(3.0 * float(X), rel=tolerance("rounded"))
         assert (failure.low, failure.high) == (LOW, HIGH)
 
 
 def test_half_widths_from_the_middle(judge: Judge) -> None:
     result = judge(PRODUCT, {"x": [X, X, X]}, [LOW, HIGH + STEP, LOW - 2 * STEP])
     assert result.permitted is not None
-    assert result.permitted.excess == pytest.approx(5.0, rel=1e-12)
-    assert [f.excess for f in result.failures] == pytest.approx([5.0, 3.0], rel=1e-12)
+    assert result.permitted.excess == pytest.approx(5.0, rel=tolerance("rounded"))
+    assert [f.excess for f in result.failures] == pytest.approx([5.0, 3.0], rel=tolerance("rounded"))
     assert [f.identity.lane for f in result.failures] == [2, 1]
     assert result.permitted.worst.startswith("x = 1.1")
 

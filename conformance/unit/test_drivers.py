@@ -26,6 +26,7 @@ from conformance.check.result import FunctionResult
 from conformance.drivers import run as runner
 from conformance.drivers.modes import modes, modes_of
 from conformance.drivers.run import run_driver
+from conformance.unit.support.tolerances import floor, tolerance
 from targets import Device, TargetUnavailable, open_runtime
 from targets.drivers import (
     Driver,
@@ -138,7 +139,9 @@ def test_every_form_gives_the_same_results(target: str, name: str, how: str) -> 
     other = execute(library, name, inputs, open_runtime(target, **mode.settings()), options=options)
     for a, b in zip(leaves(plain), leaves(other), strict=True):
         assert a.shape == b.shape
-        np.testing.assert_allclose(a, b, rtol=1e-4, atol=1e-5)
+        np.testing.assert_allclose(
+            a, b, rtol=tolerance("forms_of_a_program"), atol=floor("forms_of_a_program")
+        )
 
 
 def leaves(value: Any) -> list[Any]:

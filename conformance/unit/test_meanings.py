@@ -80,7 +80,7 @@ def agree(got: Any, expected: list[Any], arithmetic_name: str) -> None:
         if isinstance(e, bool):
             assert bool(g) is e
         else:
-            assert float(g) == pytest.approx(float(e), rel=ROUNDING[arithmetic_name], abs=1e-300)
+            assert float(g) == pytest.approx(float(e), rel=ROUNDING[arithmetic_name], abs=0.0)
 
 
 def meaning(name: str, arithmetic_name: str, *columns: Any) -> Any:

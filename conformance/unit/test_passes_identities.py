@@ -27,6 +27,7 @@ from codegen.passes.identities import ROWS, Row, identities
 from codegen.passes.norms import UNIT_SLACK
 from codegen.passes.ranges import Ranges
 from codegen.passes.values import Values
+from conformance.unit.support.tolerances import tolerance
 from conformance.unit.support.trees import no_function
 
 LANES = 400
@@ -132,7 +133,7 @@ def test_replacement_is_a_permitted_result_of_the_pattern(row: Row) -> None:
         same = evaluate(library.with_functions([after]), "probe", kept, "float64")
         assert isinstance(exact, np.ndarray)
         assert isinstance(same, np.ndarray)
-        np.testing.assert_allclose(same, exact, rtol=8 * np.finfo(np.float64).eps)
+        np.testing.assert_allclose(same, exact, rtol=tolerance("eight_ulp"))
 
 
 @pytest.mark.parametrize("row", ROWS, ids=row_id)

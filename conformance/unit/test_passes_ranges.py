@@ -29,6 +29,7 @@ from codegen.passes.scalars import components
 from codegen.passes.subject import Fact, Subject
 from codegen.passes.values import Values
 from conformance.cases.drawing import draw, families_for
+from conformance.unit.support.tolerances import tolerance
 
 LIBRARY = load_library()
 LANES = 600
@@ -147,7 +148,7 @@ def test_product_with_itself_is_a_square() -> None:
     square = values.binary("*", given["x"], given["x"])
     other = values.binary("*", given["x"], given["y"])
     assert ranges.bounds(square)[0].low == 0.0
-    assert ranges.bounds(other)[0].low == pytest.approx(-6.0, rel=1e-6)
+    assert ranges.bounds(other)[0].low == pytest.approx(-6.0, rel=tolerance("range_of_products"))
 
 
 def test_division_by_what_may_be_zero_has_no_range() -> None:
@@ -162,16 +163,18 @@ def test_directions_know_their_length() -> None:
     a, b = (values.intern(ir.Var(VEC3, p.name)) for p in function.parameters)
     ranges = Ranges(values)
     dot = values.build(ir.Builtin(F32, "dot", (a, b)))
-    assert ranges.bounds(dot)[0].high == pytest.approx(1.0, abs=1e-5)
+    assert ranges.bounds(dot)[0].high == pytest.approx(1.0, abs=tolerance("range_of_cosines"))
     across = values.build(ir.Builtin(VEC3, "cross", (values.binary("-", a, b), values.binary("+", a, b))))
     lengths = Lengths(values, ranges.bounds)
-    assert lengths.of(across)[1] == pytest.approx(2.0, abs=1e-4)
+    assert lengths.of(across)[1] == pytest.approx(2.0, abs=tolerance("range_of_lengths"))
     leaning = values.binary("+", a, values.binary("*", values.number(0.1, F32), b))
-    assert lengths.of(leaning) == pytest.approx((0.9, 1.1), abs=1e-4)
+    assert lengths.of(leaning) == pytest.approx((0.9, 1.1), abs=tolerance("range_of_lengths"))
     square = values.build(ir.Builtin(F32, "dot", (leaning, leaning)))
-    assert ranges.bounds(square)[0].low == pytest.approx(0.81, abs=1e-3)
+    assert ranges.bounds(square)[0].low == pytest.approx(0.81, abs=tolerance("range_of_squares"))
     factor = values.build(ir.Builtin(F32, "inverse_sqrt", (square,)))
-    assert lengths.of(values.binary("*", factor, leaning))[1] == pytest.approx(1.0, abs=1e-5)
+    assert lengths.of(values.binary("*", factor, leaning))[1] == pytest.approx(
+        1.0, abs=tolerance("range_of_cosines")
+    )
     assert math.isinf(lengths.of(values.build(ir.Construct(VEC3, (dot,))))[1])
 
 
@@ -184,7 +187,9 @@ def test_fact_narrows_either_order_and_nothing_else() -> None:
     ranges = Ranges(values)
     ranges.add_fact(*subject.fact(values, Fact(f"dot({second}, {first})", 0.25)))
     a, b = (values.intern(ir.Var(VEC3, name)) for name in (first, second))
-    assert ranges.bounds(values.build(ir.Builtin(F32, "dot", (a, b))))[0].low == pytest.approx(0.25, abs=1e-5)
+    assert ranges.bounds(values.build(ir.Builtin(F32, "dot", (a, b))))[0].low == pytest.approx(
+        0.25, abs=tolerance("range_of_cosines")
+    )
     assert ranges.bounds(values.build(ir.Builtin(F32, "dot", (values.negative(a), b))))[0].low < -0.9
 
 

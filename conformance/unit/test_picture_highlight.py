@@ -118,7 +118,9 @@ def surface_slopes(seen: Visibility, level: Doubles) -> tuple[Doubles, Doubles]:
     middle = value[:-1, :-1]
     usable = np.isfinite(steps).all(axis=(-2, -1)) & np.isfinite(rises).all(axis=-1)
     usable &= (middle > 0.2) & (middle < tolerance("cone_level"))
-    usable &= np.abs(np.linalg.det(np.where(usable[..., None, None], steps, np.eye(2)))) > 1e-6
+    usable &= np.abs(np.linalg.det(np.where(usable[..., None, None], steps, np.eye(2)))) > tolerance(
+        "edge_on"
+    )
     slopes = np.abs(np.linalg.solve(steps[usable], rises[usable][..., None])[..., 0])
     return slopes[:, 0], slopes[:, 1]
 

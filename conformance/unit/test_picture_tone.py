@@ -49,7 +49,7 @@ def test_differences_are_taken_before_rounding() -> None:
     threshold = srgb_decode(np.full((1, 1, 3), 100.5 / 255.0))
     below, above = threshold * (1.0 - 1e-6), threshold * (1.0 + 1e-6)
     assert (eight_bit(above) - eight_bit(below)).tolist() == [[[1, 1, 1]]]
-    assert steps_apart(above, below).max() < 1e-3
+    assert steps_apart(above, below).max() < tolerance("neighbours")
 
 
 def test_a_difference_below_the_rounding_shows() -> None:

@@ -21,6 +21,10 @@ CHECKS: dict[str, Any] = tomllib.loads(
 )["lobes"]
 TABLE = CHECKS["table"]
 SEED = 2010
+NOT_ITS_OWN = 1e-9
+"""Distance, in radii, beyond which a ray meets another arc and not the one that it leaves."""
+NEAR_AN_END = 1e-6
+"""Radians from an arc's end within which rounding decides what a ray meets."""
 
 
 def lobe(name: str, parameters: list[float]) -> LobeEvaluator:
@@ -132,7 +136,7 @@ def blocked(xi: Any, phi: float, spread: float) -> Any:
             distance = -b + sign * np.sqrt(np.maximum(root, 0.0))
             height, side = z + distance * dz, a + distance * dy
             on_arc = np.abs(np.arctan2(side, height)) <= spread
-            hidden |= (root > 0.0) & (distance > 1e-9) & on_arc
+            hidden |= (root > 0.0) & (distance > NOT_ITS_OWN) & on_arc
     return hidden
 
 
@@ -143,7 +147,7 @@ def test_visible_arcs_agree_with_rays() -> None:
             xi = random.uniform(-spread, spread, 100)
             gamma, side = np.array([np.pi / 2.0 - abs(phi)]), np.array([np.copysign(1.0, phi)])
             a, b = lobes_fibre.visible_arc(gamma, side, np.array([spread]))
-            clear_of_ends = (np.abs(xi - a) > 1e-6) & (np.abs(xi - b) > 1e-6)
+            clear_of_ends = (np.abs(xi - a) > NEAR_AN_END) & (np.abs(xi - b) > NEAR_AN_END)
             np.testing.assert_array_equal(
                 ((xi > a) & (xi < b))[clear_of_ends], ~blocked(xi, phi, spread)[clear_of_ends]
             )

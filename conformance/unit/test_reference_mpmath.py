@@ -17,6 +17,9 @@ from conformance.unit.signatures import FUNCTIONS
 
 ROWS = 16
 SEED = 7
+SMALL_POWER = 0.02
+LARGEST_COSINE = 1e-4
+"""Above it a small power of a strand cosine magnifies nothing worth a look."""
 
 
 @pytest.fixture(autouse=True)
@@ -67,10 +70,12 @@ def test_every_function_has_a_form() -> None:
 def test_small_powers_just_above_the_dark_side() -> None:
     """Strand cosines between 1e-6 and 1e-4, where a small power magnifies an error of 1e-16."""
     points = cases.load("dark_side_triples")
-    exponent = np.full(len(points["t"]), 0.02, dtype=np.float32)
+    exponent = np.full(len(points["t"]), SMALL_POWER, dtype=np.float32)
     inputs = {**points, "exponent": exponent}
     value = reference_for("strand_specular")(*inputs.values())
-    close = np.flatnonzero((value > 0.0) & (value < 1e-4**0.02) & ~ambiguous("strand_specular", inputs))
+    close = np.flatnonzero(
+        (value > 0.0) & (value < LARGEST_COSINE**SMALL_POWER) & ~ambiguous("strand_specular", inputs)
+    )
     assert len(close) > ROWS
     for k in close:
         arguments = [exact(row(x, int(k))) for x in inputs.values()]

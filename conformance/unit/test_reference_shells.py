@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from conformance.reference import shells
+from conformance.unit.support.tolerances import tolerance
 
 CHECKS: dict[str, Any] = tomllib.loads(
     Path(__file__).with_name("scene_reference_checks.toml").read_text(encoding="utf-8")
@@ -34,7 +35,7 @@ def test_heights_end_at_zero_and_one() -> None:
 def test_shadow_is_exact_at_both_ends() -> None:
     lowest = np.random.Generator(np.random.Philox(SEED)).random(1000)
     np.testing.assert_array_equal(shells.shell_shadow(np.zeros(1000), lowest), lowest)
-    np.testing.assert_allclose(shells.shell_shadow(np.ones(1000), lowest), 1.0, rtol=3e-16)
+    np.testing.assert_allclose(shells.shell_shadow(np.ones(1000), lowest), 1.0, rtol=tolerance("next_to_one"))
     check = CHECKS["height_by_count"]
     darkened = 1.0 - shells.shell_shadow(np.array([15.0 / 16.0]), np.array([0.3]))[0]
     assert abs(darkened - check["error"]) <= check["tolerance"]
@@ -93,14 +94,14 @@ def test_fin_opacities_have_the_documented_means() -> None:
         fin, surface = shells.fin_opacity(v, n_fin), shells.fin_opacity_surface(v, n)
         assert abs(fin.mean() - check[name][0]) <= check["tolerance"], (name, fin.mean())
         assert abs(surface.mean() - check[name][1]) <= check["tolerance"], (name, surface.mean())
-        assert (fin <= surface + 1e-15).all()
+        assert (fin <= surface + tolerance("rounded")).all()
 
 
 def test_fins_at_the_silhouette() -> None:
     a = np.array([0.0, 0.0, 0.5, -0.5, 1e-30, 0.3, 1.0, -1.0])
     b = np.array([0.0, 0.7, -0.5, -0.5, 1e-30, 0.1, 1.0, -1.0])
     opacity = shells.fin_opacity_silhouette(a, b, np.full(8, 0.25))
-    np.testing.assert_allclose(opacity, [1.0, 1.0, 1.0, 0.0, 1.0, 0.6, 0.0, 0.0], atol=1e-15)
+    np.testing.assert_allclose(opacity, [1.0, 1.0, 1.0, 0.0, 1.0, 0.6, 0.0, 0.0], atol=tolerance("rounded"))
     sharp = shells.fin_opacity_silhouette(np.array([1e-7, 1e-5]), np.array([1e-7, 1e-5]), np.zeros(2))
     np.testing.assert_allclose(sharp, [0.9, 0.0])
 
@@ -109,16 +110,16 @@ def test_fin_frames() -> None:
     n, edge = directions(1000), directions(1000, SEED + 1) * 37.0
     normal = shells.fin_normal(edge, n)
     for other in (n, edge):
-        np.testing.assert_allclose(np.sum(normal * other, axis=1), 0.0, atol=1e-12)
-    np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, rtol=1e-14)
+        np.testing.assert_allclose(np.sum(normal * other, axis=1), 0.0, atol=tolerance("long_vectors"))
+    np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, rtol=tolerance("unit_length"))
     along = shells.fin_normal(3.0 * n, n)
-    np.testing.assert_allclose(np.linalg.norm(along, axis=1), 1.0, rtol=1e-14)
+    np.testing.assert_allclose(np.linalg.norm(along, axis=1), 1.0, rtol=tolerance("unit_length"))
     up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
     np.testing.assert_allclose(
-        shells.fin_normal(0.0 * up, up), [[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], atol=1e-15
+        shells.fin_normal(0.0 * up, up), [[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], atol=tolerance("rounded")
     )
     tip = shells.fin_position(edge, n, np.ones(1000), np.full(1000, 2.0))
-    np.testing.assert_allclose(np.linalg.norm(tip - edge, axis=1), 2.0, rtol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(tip - edge, axis=1), 2.0, rtol=tolerance("long_vectors"))
 
 
 def test_shells_are_never_longer_than_the_coat() -> None:
@@ -126,12 +127,12 @@ def test_shells_are_never_longer_than_the_coat() -> None:
     n, height = directions(1000), random.random(1000)
     comb, force = random.normal(size=(2, 1000, 3))
     moved = shells.shell_offset(0.0 * n, n, np.full(1000, 3.0), height, comb, force)
-    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 3.0 * height, rtol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 3.0 * height, rtol=tolerance("long_vectors"))
     cancelled = shells.shell_offset(0.0 * n, n, np.ones(1000), np.ones(1000), -n, 0.0 * n)
-    np.testing.assert_allclose(np.linalg.norm(cancelled, axis=1), 1.0, rtol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(cancelled, axis=1), 1.0, rtol=tolerance("long_vectors"))
 
 
 def test_blending() -> None:
     under, over = np.array([[0.2, 0.4, 0.6]] * 3), np.array([[1.0, 0.5, 0.0]] * 3)
     got = shells.blend_over(under, over, np.array([0.0, 0.5, 1.0]))
-    np.testing.assert_allclose(got, [under[0], [0.6, 0.45, 0.3], over[0]], rtol=1e-15)
+    np.testing.assert_allclose(got, [under[0], [0.6, 0.45, 0.3], over[0]], rtol=tolerance("rounded"))

@@ -40,6 +40,7 @@ from codegen.scene.prices import Prices
 from codegen.scene.proof import Proof, prove
 from codegen.scene.reduce import Reduced, Reducer
 from codegen.scene.search import Search
+from conformance.unit.support.tolerances import floor, tolerance
 
 NEUTRAL = {
     "no highlight": ('"optics.k_specular" = [0.0, 0.0, 0.0]', {"k_specular", "exponent"}),
@@ -196,7 +197,9 @@ def test_many_lights_are_a_loop_that_adds_up_single_ones(tmp_path: Path) -> None
         distance = np.linalg.norm(offset, axis=1)[:, None]
         value = evaluate(library, "banks_shade", {**shared, "l": offset / distance}, "float64")
         expected += np.asarray(value) * lights["light_colours_5"][:, k] / np.maximum(distance, 1.0) ** 2
-    np.testing.assert_allclose(np.asarray(total), expected, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(
+        np.asarray(total), expected, rtol=tolerance("summed_lights"), atol=floor("summed_lights")
+    )
 
 
 def test_the_lights_of_a_map_bring_its_energy() -> None:
@@ -208,10 +211,14 @@ def test_the_lights_of_a_map_bring_its_energy() -> None:
         lights = environment.median_cut(rgb, count)
         assert len(lights) == count
         np.testing.assert_allclose(
-            np.sum([light.colour for light in lights], axis=0), everything.colours.sum(axis=0), rtol=1e-12
+            np.sum([light.colour for light in lights], axis=0),
+            everything.colours.sum(axis=0),
+            rtol=tolerance("summed"),
         )
-        np.testing.assert_allclose([np.linalg.norm(light.direction) for light in lights], 1.0, rtol=1e-12)
-    np.testing.assert_allclose(everything.colours.sum(axis=0), 4.0 * rgb_mean(rgb), rtol=1e-12)
+        np.testing.assert_allclose(
+            [np.linalg.norm(light.direction) for light in lights], 1.0, rtol=tolerance("summed")
+        )
+    np.testing.assert_allclose(everything.colours.sum(axis=0), 4.0 * rgb_mean(rgb), rtol=tolerance("summed"))
     brightest = everything.directions.reshape(16, 32, 3)[3, 7]
     assert np.dot(lights[0].direction, brightest) > 0.999
 
