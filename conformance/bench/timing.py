@@ -126,9 +126,10 @@ class Bench:
             steps *= 4
             with self.prepared({"": text}, words, steps) as ready:
                 ready[""].launch()
-                begin = time.perf_counter()
+                # Not by the wall: where other programs compute too, a short launch takes long as well.
+                begin = time.process_time()
                 ready[""].launch()
-                taken = time.perf_counter() - begin
+                taken = time.process_time() - begin
         with self.prepared({"": text}, words, steps) as ready:
             ready[""].launch()
             return driver_clock(ready[""].launch)
