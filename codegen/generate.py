@@ -13,6 +13,7 @@ from codegen.backends import TARGETS, dialects_of
 from codegen.emit.dialect import Dialect
 from codegen.emit.module import emit
 from codegen.errors import UserError
+from codegen.estimators import estimator_sources
 from codegen.files import write_text
 from codegen.guarantee_page import page
 from codegen.library import default_root, load_library
@@ -29,6 +30,8 @@ def generated_files() -> Iterator[tuple[Path, str]]:
     """Every generated file with the text it should have; what the sources themselves need comes first."""
     root = default_root().parent
     yield root / "shaderlib" / "lang.py", lang_stub()
+    for path, text in estimator_sources():
+        yield root / "shaderlib" / path, text
     library = load_library()
     for target in TARGETS:
         for d in dialects_of(target).values():

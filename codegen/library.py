@@ -15,7 +15,7 @@ from codegen.frontend.resolve import Resolver
 from codegen.ir.nodes import Function, StructDef, callees, expressions
 from codegen.ir.types import Array, Struct, Type
 
-SECTIONS = ("numeric", "direction", "strand", "fakefur", "shells", "sampling", "lobes", "maps")
+SECTIONS = ("numeric", "direction", "strand", "fakefur", "shells", "sampling", "lobes", "maps", "environment")
 """Order of the sections in listings and emitted files; unknown sections follow alphabetically."""
 
 VERSION = "0.1.0"
