@@ -38,10 +38,14 @@ class Arithmetic:
         """Whether the half form of a function is evaluated: f16 rounded to half, f32 to float32."""
         return self.name.startswith("float16")
 
+    @functools.cached_property
+    def dtypes(self) -> Mapping[str, type[np.generic]]:
+        """How each scalar type is held, by its name."""
+        half = np.float16 if self.is_half else self.floats
+        return {F16.name: half, F32.name: self.floats, **{t.name: d for t, d in INTEGER_TYPES.items()}}
+
     def dtype(self, element: Scalar) -> type[np.generic]:
-        if element == F16 and self.is_half:
-            return np.float16
-        return self.floats if element in (F16, F32) else INTEGER_TYPES[element]
+        return self.dtypes[element.name]
 
 
 def _float_to_bits(x: Array) -> Array:

@@ -6,6 +6,7 @@ an `If` are computed for all lanes and chosen lane by lane; lanes that have retu
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Mapping
 from typing import Any, cast
@@ -14,6 +15,7 @@ import numpy as np
 
 from codegen.evaluate.arrays import Arithmetic, Array, Value, broadcast, choose, convert_inputs
 from codegen.evaluate.arrays import arithmetic as find_arithmetic
+from codegen.evaluate.memory import Memory, outer_calls, variables
 from codegen.evaluate.textures import as_map
 from codegen.half import half_rules
 from codegen.ir import nodes as ir
@@ -30,6 +32,7 @@ def evaluate(
     arithmetic: str = "float32",
     *,
     rules: HalfRules | None = None,
+    memory: Memory | None = None,
 ) -> Value:
     """The function's values over arrays of inputs.
 
@@ -37,6 +40,7 @@ def evaluate(
     arithmetic  "float32" (op by op), "float64", "mpmath" (at mpmath's current precision), or the function's
                 half form op by op: "float16", "float16-strict" (denormals are 0, overflow is NaN)
     rules       of the half form; those of the library if None
+    memory      what was evaluated in this arithmetic before, over the same arrays as inputs
     returns     scalars (N,), vectors (N, size), structs as dicts of those
     raises      UserError for unknown functions, parameters or shapes
     """
@@ -47,10 +51,13 @@ def evaluate(
         versions = half_versions(library, [name], half_rules(library) if rules is None else rules)
         find = {v.function.name: v.function for v in versions}.__getitem__
     function = find(name)
-    arrays, count = convert_inputs({p.name: p.type for p in function.parameters}, inputs, chosen, name)
+    if memory is None:
+        arrays, count = convert_inputs({p.name: p.type for p in function.parameters}, inputs, chosen, name)
+    else:
+        arrays, count = memory.inputs(function, inputs, chosen)
     arrays = with_edges(function, arrays)
     with np.errstate(all="ignore"):  # lanes that a branch does not take may overflow or divide by zero
-        return _Frame(find, chosen, function, arrays, count).run()
+        return _Frame(find, chosen, function, arrays, count, memory).run()
 
 
 def with_edges(function: ir.Function, arrays: dict[str, Value]) -> dict[str, Value]:
@@ -64,6 +71,20 @@ def with_edges(function: ir.Function, arrays: dict[str, Value]) -> dict[str, Val
     return found
 
 
+@functools.lru_cache(256)
+def _filled(kind: np.dtype[Any], value: float | int | bool, count: int) -> Array:
+    """A constant in every lane; not to be written to."""
+    filled = np.full(count, value, kind)
+    filled.setflags(write=False)
+    return filled
+
+
+@functools.lru_cache(256)
+def _alike(kind: np.dtype[Any], value: int, count: int) -> Array:
+    """A whole number in every lane, stored once; the same object for the same number."""
+    return np.broadcast_to(kind.type(value), (count,))
+
+
 class _Frame:
     """One call: its locals, which lanes still run, and what has been returned so far."""
 
@@ -74,12 +95,15 @@ class _Frame:
         function: ir.Function,
         inputs: dict[str, Value],
         count: int,
+        memory: Memory | None = None,
     ) -> None:
         self.find = find
         self.arithmetic = arithmetic
         self.function = function
         self.scope: dict[str, Value] = dict(inputs)
         self.count = count
+        self.memory = memory
+        self.made: Mapping[ir.Call, Value] = {}
         self.result: Value | None = None
         self.returned: Array = np.zeros(count, np.bool_)
 
@@ -92,11 +116,11 @@ class _Frame:
         for s in body:
             match s:
                 case ir.Let():
-                    self.scope[s.name] = self.expr(s.value)
+                    self.scope[s.name] = self.whole(s.value)
                 case ir.Assign():
-                    value = self.expr(s.value)
+                    value = self.whole(s.value)
                     live = active & ~self.returned
-                    self.scope[s.name] = choose(live, value, self.scope[s.name])
+                    self.scope[s.name] = value if live.all() else choose(live, value, self.scope[s.name])
                 case ir.If():
                     condition = self.array(s.condition)
                     self.block(s.then, active & condition)
@@ -104,7 +128,7 @@ class _Frame:
                 case ir.For():
                     self.loop(s, active)
                 case ir.Return():
-                    value = self.expr(s.value)
+                    value = self.whole(s.value)
                     live = active & ~self.returned
                     self.result = value if self.result is None else choose(live, value, self.result)
                     self.returned = self.returned | live
@@ -113,14 +137,30 @@ class _Frame:
         """As many iterations as the lane that runs longest has; the others wait."""
         if s.limit is None:
             for i in range(s.start, s.stop):
-                self.scope[s.name] = np.full(self.count, i, np.int32)
+                self.scope[s.name] = _alike(np.dtype(np.int32), i, self.count)
                 self.block(s.body, active)
             return
         limit = self.array(s.limit)
         most = int(limit[active & ~self.returned].max(initial=0))
         for i in range(s.start, min(s.stop, most)):
-            self.scope[s.name] = np.full(self.count, i, limit.dtype)
+            self.scope[s.name] = _alike(limit.dtype, i, self.count)
             self.block(s.body, active & (limit > i))
+
+    def whole(self, e: ir.Expr) -> Value:
+        """The value of a statement's expression or of an argument; remembered where there is a memory."""
+        if self.memory is None or isinstance(e, ir.Var):
+            return self.expr(e)
+        if isinstance(e, ir.Call):
+            return self.call(e)
+        made = {call: self.call(call) for call in outer_calls(e)}
+
+        def make() -> Value:
+            self.made = made
+            value = self.expr(e)
+            self.made = {}
+            return value
+
+        return self.memory.value(e, [*(self.scope[name] for name in variables(e)), *made.values()], make)
 
     def array(self, e: ir.Expr) -> Array:
         value = self.expr(e)
@@ -147,7 +187,7 @@ class _Frame:
                 # What only a map tells has one lane.
                 return broadcast(found, self.count) if len(found) != self.count else found
             case ir.Call():
-                return self.call(e)
+                return self.made[e] if e in self.made else self.call(e)
             case ir.Construct():
                 return self.construct(e.type, [self.expr(a) for a in e.args])
             case ir.Convert():
@@ -168,27 +208,29 @@ class _Frame:
     def element(self, value: Value, index: Array) -> Value:
         """The elements of an array that the lanes' numbers name."""
         assert isinstance(value, dict)
+        if index.strides == (0,):  # one number for all lanes, as in a loop
+            return value.get(str(int(index[0])), value["0"])
         found = value["0"]
         for k in range(1, len(value)):
             found = choose(index == k, value[str(k)], found)
         return found
 
     def constant(self, e: ir.Const) -> Array:
-        if e.type == F16 and self.arithmetic.is_half:
-            return np.full(self.count, e.value, np.float16)
-        if e.type in (F16, F32):
-            value = self.arithmetic.literal(float(e.value))
-            filled = np.empty(self.count, self.arithmetic.floats)
-            filled.fill(value)
-            return filled
         assert isinstance(e.type, Scalar)
-        return np.full(self.count, e.value, self.arithmetic.dtype(e.type))
+        kind = self.arithmetic.dtype(e.type)
+        value = self.arithmetic.literal(e.value) if kind is self.arithmetic.floats else e.value
+        if kind is np.object_:
+            return np.full(self.count, value, object)
+        return _filled(np.dtype(kind), value, self.count)
 
     def fit(self, type_: Type, value: Any) -> Array:
         """The value in the arithmetic's own dtype: numpy widens in places (comparisons of mpmath numbers)."""
         element = element_of(type_)
         assert isinstance(element, Scalar)
-        fitted = np.asarray(value).astype(self.arithmetic.dtype(element), copy=False)
+        dtype = self.arithmetic.dtype(element)
+        if isinstance(value, np.ndarray) and value.dtype.type is dtype and not self.arithmetic.strict:
+            return value
+        fitted = np.asarray(value).astype(dtype, copy=False)
         if self.arithmetic.strict and element == F16:
             kept = np.where(np.abs(fitted) < np.float16(SMALLEST_NORMAL), np.float16(0.0), fitted)
             return np.where(np.isinf(kept), np.float16(np.nan), kept)
@@ -196,8 +238,11 @@ class _Frame:
 
     def call(self, e: ir.Call) -> Value:
         function = self.find(e.function)
-        inputs = {p.name: self.expr(a) for p, a in zip(function.parameters, e.args, strict=True)}
-        return _Frame(self.find, self.arithmetic, function, inputs, self.count).run()
+        inputs = {p.name: self.whole(a) for p, a in zip(function.parameters, e.args, strict=True)}
+        frame = _Frame(self.find, self.arithmetic, function, inputs, self.count, self.memory)
+        if self.memory is None:
+            return frame.run()
+        return self.memory.value(function.name, list(inputs.values()), frame.run)
 
     def construct(self, type_: Type, parts: list[Value]) -> Value:
         if isinstance(type_, Struct):

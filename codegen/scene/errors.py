@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import functools
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from codegen.evaluate import evaluate
 from codegen.evaluate.arrays import Value
+from codegen.evaluate.memory import Memory
 from codegen.library import Library
 from codegen.scene.points import Inputs, Points
 
@@ -47,11 +50,18 @@ def distance(got: Floats, *references: Floats) -> Measured:
     """The distance of results to the nearest of the references, lane by lane."""
     finite = bool(np.isfinite(got).all())
     with np.errstate(all="ignore"):
-        apart = np.min([np.abs(got - r).max(axis=1) for r in references], axis=0)
+        apart = functools.reduce(np.minimum, [_largest(np.abs(got - r)) for r in references])
     apart = np.where(np.isfinite(apart), apart, np.inf)
     worst = int(np.argmax(apart))
-    p999 = np.quantile(apart, 0.999, method="higher")  # not interpolated: an error may be infinite
+    place = math.ceil(0.999 * (len(apart) - 1))  # a value that occurs: an error may be infinite
+    p999 = np.partition(apart, place)[place]
     return Measured(float(apart[worst]), float(p999), worst, finite)
+
+
+def _largest(a: Floats) -> Floats:
+    """The largest component of each row: over few columns much faster than along an axis."""
+    found: Floats = functools.reduce(np.maximum, a.T)
+    return found
 
 
 SCREEN = 2_500
@@ -69,6 +79,7 @@ class Reference:
     points: Points
     exact: Floats
     single: Floats
+    memory: Memory | None = field(default=None, repr=False, compare=False)
 
     @staticmethod
     def of(library: Library, name: str, points: Points) -> Reference:
@@ -84,15 +95,15 @@ class Reference:
         return distance(self.single[ordinary], self.exact[ordinary]).p999
 
     def screen(self) -> Reference:
-        """The same over the first few points."""
+        """The same over the first few points, where candidates that are much alike share their work."""
         points = self.points
         few = Points(first(points.inputs, SCREEN), min(SCREEN, points.count), points.hard[:SCREEN])
-        return Reference(few, self.exact[:SCREEN], self.single[:SCREEN])
+        return Reference(few, self.exact[:SCREEN], self.single[:SCREEN], Memory())
 
     def values(self, library: Library, name: str) -> Floats:
         """The values of another function of some of the parameters, evaluated in float32."""
         given = {p.name: self.points.inputs[p.name] for p in library.function(name).parameters}
-        return as_floats(evaluate(library, name, given, "float32"))
+        return as_floats(evaluate(library, name, given, "float32", memory=self.memory))
 
     def error(self, library: Library, name: str) -> Measured:
         """How far another function is."""

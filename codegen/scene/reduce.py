@@ -172,6 +172,8 @@ class Reducer:
         whole = self.specialised(choices, powers).function.body
         for path in sorted(choices, reverse=True):
             fewer = {p: name for p, name in choices.items() if p != path}
+            if self.search.differ(choices, fewer):
+                continue  # a term that changes values is there
             if self.specialised(fewer, powers).function.body == whole:
                 choices = fewer
         return choices
@@ -190,7 +192,7 @@ class Reducer:
                 if looser is not None:
                     function = looser
                     names.append(form)
-            if not names:
+            if not names or not self.passes(function, budget):
                 continue
             candidate = self.cleaned(function)
             before, after = prices.body(made.function), prices.body(candidate.function)

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from codegen.ir import nodes as ir
 from codegen.library import Library
 from codegen.scene.errors import Measured, Reference
@@ -70,11 +72,19 @@ class Search:
         """The joint error of choices, made for every light; over few points where that will do."""
         key = screened, tuple(sorted(choices.items()))
         if key not in self._errors:
-            made = self.functions(choices, "scene_candidate")
-            extended = self.library.with_functions(made)
             reference = self.screen if screened else self.reference
-            self._errors[key] = reference.error(extended, made[-1].name)
+            self._errors[key] = reference.error(*self.made(choices))
         return self._errors[key]
+
+    def differ(self, choices: Choices, others: Choices) -> bool:
+        """Whether two sets of choices give different values at one of the few points."""
+        one, other = (self.screen.values(*self.made(c)) for c in (choices, others))
+        return not np.array_equal(one, other)
+
+    def made(self, choices: Choices) -> tuple[Library, str]:
+        """The library with the general function that these choices give, and that function's name."""
+        functions = self.functions(choices, "scene_candidate")
+        return self.library.with_functions(functions), functions[-1].name
 
     def functions(self, choices: Choices, name: str) -> list[ir.Function]:
         """The general function with the choices made in the model of every light."""

@@ -7,6 +7,7 @@ calls of one function are two sites, since what is known of their arguments diff
 from __future__ import annotations
 
 import functools
+import hashlib
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -185,7 +186,10 @@ def _calls(body: tuple[ir.Stmt, ...]) -> list[ir.Call]:
 
 
 def substituted(library: Library, root: ir.Function, choices: Choices, name: str) -> list[ir.Function]:
-    """The root under another name with the choices made, after copies of what lies between."""
+    """The root under another name with the choices made, after copies of what lies between.
+
+    Copies are named after where they are and what is chosen below, so that a name means one function.
+    """
     made: list[ir.Function] = []
 
     def visit(f: ir.Function, path: Path, new_name: str) -> None:
@@ -196,15 +200,20 @@ def substituted(library: Library, root: ir.Function, choices: Choices, name: str
                 continue
             here = (*path, k)
             callee = choices.get(here, call.function)
-            below = any(p[: len(here)] == here and len(p) > len(here) for p in choices)
+            below = [(p, c) for p, c in choices.items() if p[: len(here)] == here and len(p) > len(here)]
             names[k] = callee
             if below:
-                names[k] = f"{callee}_at_{'_'.join(map(str, here))}"
+                names[k] = f"{callee}_at_{'_'.join(map(str, here))}_{_number(below)}"
                 visit(library.function(callee), here, names[k])
         made.append(replace(f, name=new_name, kind="helper", base=None, body=_with_calls(f, names)))
 
     visit(root, (), name)
     return made
+
+
+def _number(choices: list[tuple[Path, str]]) -> int:
+    """A number that tells these choices from others."""
+    return int.from_bytes(hashlib.sha256(repr(sorted(choices)).encode()).digest()[:8], "big")
 
 
 def _with_calls(f: ir.Function, names: Mapping[int, str]) -> tuple[ir.Stmt, ...]:

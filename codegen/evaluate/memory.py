@@ -1,0 +1,66 @@
+"""A memory of evaluated expressions: functions that share most of their text share most of their work.
+
+Values are the same object if and only if they came from the same expression over the same objects, so an
+expression is known by itself and by the objects that its variables stand for, a call by the function's name
+and its arguments. What is remembered keeps those objects alive. A memory serves one arithmetic and one number
+of lanes, and functions that are called by one name have to be the same throughout.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from codegen.evaluate.arrays import Arithmetic, Value, convert_inputs
+from codegen.ir import nodes as ir
+
+MOST = 4000
+"""Values that are remembered; then all are forgotten. At 2500 lanes of three floats each takes 30 kB."""
+
+
+class Memory:
+    """Remembers values while functions are compared over the same inputs."""
+
+    def __init__(self) -> None:
+        self._values: dict[tuple[object, ...], tuple[Value, list[Value]]] = {}
+        self._inputs: dict[tuple[object, ...], tuple[Value, Any, int]] = {}
+
+    def inputs(
+        self, function: ir.Function, given: Mapping[str, Any], arithmetic: Arithmetic
+    ) -> tuple[dict[str, Value], int]:
+        """The inputs as `convert_inputs` makes them; the same objects for the same given ones."""
+        keys = {p.name: (p.name, p.type, id(given.get(p.name))) for p in function.parameters}
+        if set(given) != set(keys) or any(key not in self._inputs for key in keys.values()):
+            types = {p.name: p.type for p in function.parameters}
+            arrays, count = convert_inputs(types, given, arithmetic, function.name)
+            for name, value in arrays.items():
+                self._inputs.setdefault(keys[name], (value, given[name], count))
+        found = {name: self._inputs[key] for name, key in keys.items()}
+        counts = {count for _, _, count in found.values()}
+        assert len(counts) == 1, "a memory serves one number of lanes"
+        return {name: value for name, (value, _, _) in found.items()}, counts.pop()
+
+    def value(self, what: ir.Expr | str, of: list[Value], make: Callable[[], Value]) -> Value:
+        """The value of an expression over those of its variables and calls, or of a call over its own."""
+        key = (what, *map(id, of))
+        known = self._values.get(key)
+        if known is None:
+            if len(self._values) >= MOST:
+                self._values.clear()
+            known = self._values[key] = make(), of
+        return known[0]
+
+
+@functools.lru_cache(1 << 16)
+def variables(e: ir.Expr) -> tuple[str, ...]:
+    """The names of an expression's variables, each once."""
+    return tuple(dict.fromkeys(x.name for x in ir.walk(e) if isinstance(x, ir.Var)))
+
+
+@functools.lru_cache(1 << 16)
+def outer_calls(e: ir.Expr) -> tuple[ir.Call, ...]:
+    """The calls in an expression that are in no other call's arguments."""
+    if isinstance(e, ir.Call):
+        return (e,)
+    return tuple(call for part in ir.children(e) for call in outer_calls(part))

@@ -1,0 +1,68 @@
+"""A memory of evaluated expressions changes no value: with one and without, bits agree.
+
+Plan. Functions with calls, structs and branches are evaluated with one memory, twice, and then with every
+variant at every call site; a scene with loops over arrays likewise. Each result is held against evaluation
+without a memory.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from codegen.evaluate import evaluate
+from codegen.evaluate.memory import Memory
+from codegen.library import Library, load_library
+from codegen.scene.document import read_scene
+from codegen.scene.general import general_function
+from codegen.scene.points import draw as scene_points
+from codegen.scene.sites import sites, substituted
+from conformance.cases.drawing import draw, families_for
+
+LIBRARY = load_library()
+NAMES = ("fakefur_shade", "brushed_shade", "safe_normalize", "fur_geometry")
+COUNT = 64
+LOOPS = '[shade]\nmodel = "fakefur"\n[lights]\ndirectional = 5\npoint = 6\n'
+
+
+def bits(value: Any) -> list[bytes]:
+    if isinstance(value, dict):
+        return [b for part in value.values() for b in bits(part)]
+    return [np.ascontiguousarray(value).tobytes()]
+
+
+def check(library: Library, name: str, inputs: Any, memory: Memory) -> None:
+    plain = evaluate(library, name, inputs)
+    assert bits(evaluate(library, name, inputs, memory=memory)) == bits(plain)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_memory_changes_no_value(name: str) -> None:
+    function = LIBRARY.function(name)
+    inputs = draw(function, families_for(function.parameters)[0], COUNT)
+    memory = Memory()
+    for _ in range(2):
+        check(LIBRARY, name, inputs, memory)
+    for site in sites(LIBRARY, function, {}, {}):
+        for option in site.options:
+            made = substituted(LIBRARY, function, {site.path: option}, "changed")
+            check(LIBRARY.with_functions(made), "changed", inputs, memory)
+
+
+def test_loops_are_remembered_light_by_light(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(LOOPS, encoding="utf-8")
+    scene = read_scene(tmp_path / "scene.toml", LIBRARY)
+    general = general_function(scene)
+    library = LIBRARY.with_functions([general.function])
+    memory, inputs = Memory(), scene_points(scene, general, COUNT).inputs
+    for _ in range(2):
+        check(library, general.function.name, inputs, memory)
+
+
+def test_other_inputs_under_the_same_names_are_other_values() -> None:
+    memory = Memory()
+    for x in (0.25, 0.5):
+        check(LIBRARY, "safe_sqrt", {"x": np.full(COUNT, x, np.float32)}, memory)
