@@ -73,15 +73,26 @@ class Ranges:
                 for part in _pending(e, self._under[0][1]):  # operands first, without deep recursion
                     if id(part) in self._under[0][1]:
                         continue  # asked for meanwhile, for the lengths of others
-                    cut = self._cut(part)
-                    for transfer, known in self._under:
-                        known[id(part)] = self._narrowed(part, self._value(transfer, known, part), cut)
+                    self._bound(part)
                     self._kept.append(part)
             found = {id(known[id(e)]): known[id(e)] for _, known in self._under}
             self._known[id(e)] = tuple(_hull(singles) for singles in zip(*found.values(), strict=True))
         return self._known[id(e)]
 
-    def _value(self, transfer: Transfer, known: Mapping[int, Bound], e: ir.Expr) -> Bound:
+    def _bound(self, e: ir.Expr) -> None:
+        """Note the intervals of an expression under every table; tables that agree share them."""
+        cut, parts, leaf = self._cut(e), ir.children(e), self._leaf(e)
+        made: dict[tuple[int, ...], Bound] = {}
+        for transfer, known in self._under:
+            operands = [known[id(c)] for c in parts]
+            key = () if leaf is not None else (transfer.signature(e), *map(id, operands))
+            if key not in made:
+                found = transfer.apply(e, operands) if leaf is None else leaf
+                made[key] = self._narrowed(e, found, cut)
+            known[id(e)] = made[key]
+
+    def _leaf(self, e: ir.Expr) -> Bound | None:
+        """The intervals of what is the same under every table; None for operations."""
         match e:
             case ir.Const():
                 key = ("const", e.type.name, type(e.value), repr(e.value))
@@ -91,7 +102,7 @@ class Ranges:
             case ir.Call() | ir.Member():
                 return _anything(e.type)
             case _:
-                return transfer.apply(e, [known[id(c)] for c in ir.children(e)])
+                return None
 
     def _variable(self, e: ir.Var) -> Bound:
         if e.name in self.values.indices:

@@ -31,7 +31,7 @@ from codegen.passes.ranges import Ranges
 from codegen.passes.scalars import components
 from codegen.passes.schedule import statements
 from codegen.passes.subject import Fact, Subject, is_taken_apart
-from codegen.passes.sums import cancelled
+from codegen.passes.sums import cancellation
 from codegen.passes.values import Rule, Step, Values, constant_components, leaves
 
 EXACT_KINDS = ("exact", "finite", "real")
@@ -172,7 +172,7 @@ def specialise(
 
 def _rules(proofs: Ranges, kinds: frozenset[str]) -> tuple[Rule, ...]:
     """All rules in the order in which they are tried."""
-    last: tuple[Rule, ...] = (cancelled,) if "real" in kinds else ()
+    last: tuple[Rule, ...] = (cancellation(),) if "real" in kinds else ()
     return (components, fold_constants, identities(proofs, kinds), zero_components, guards(proofs), *last)
 
 

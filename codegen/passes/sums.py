@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -19,7 +20,7 @@ from codegen.intervals.numbers import LARGEST, SMALLEST
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32, Scalar, Vector
 from codegen.passes.operations import expression_operations
-from codegen.passes.values import Rewrite, Values, constant_components
+from codegen.passes.values import Rewrite, Rule, Values, constant_components
 
 NAME = "sums"
 WHY = "real: terms cancel exactly when multiplied out, so the result is the same real number"
@@ -33,22 +34,25 @@ Polynomial = dict[Monomial, Fraction]
 """Products of values (their ids, sorted) with their exact factors."""
 
 
-def cancelled(values: Values, e: ir.Expr) -> Rewrite | None:
-    """Replaces a sum by what is left of it."""
-    if not (isinstance(e, ir.Binary) and e.op in "+-" and _element(e.type) == F32):
-        return None
-    if not _subtracts(e, DEEPEST):
-        return None
-    atoms: dict[int, ir.Expr] = {}
-    expanded = _Expansion(atoms)
-    found = expanded.of(e, DEEPEST)
-    if found is None or not expanded.cancels:
-        return None
-    left = {monomial: factor for monomial, factor in found.items() if factor}
-    made = _rebuilt(values, left, atoms, e)
-    if made is None or _cost(made) >= _cost(e):
-        return None
-    return Rewrite(made, NAME, WHY)
+def cancellation() -> Rule:
+    """The rule that replaces a sum by what is left of it; it remembers what it multiplied out."""
+    expanded = _Expansion()
+
+    def rule(values: Values, e: ir.Expr) -> Rewrite | None:
+        if not (isinstance(e, ir.Binary) and e.op in "+-" and _element(e.type) == F32):
+            return None
+        if not _subtracts(e, DEEPEST):
+            return None
+        found = expanded.of(e, DEEPEST)
+        if found is None or not found.cancels:
+            return None
+        left = {monomial: factor for monomial, factor in found.terms.items() if factor}
+        made = _rebuilt(values, left, expanded.atoms, e)
+        if made is None or _cost(made) >= _cost(e):
+            return None
+        return Rewrite(made, NAME, WHY)
+
+    return rule
 
 
 def _subtracts(e: ir.Expr, depth: int) -> bool:
@@ -62,56 +66,74 @@ def _subtracts(e: ir.Expr, depth: int) -> bool:
             return any(x < 0 for x in constant_components(e) or ())
 
 
+@dataclass(frozen=True)
+class _Sum:
+    """A sum of products, and whether a product of variables cancelled on the way."""
+
+    terms: Polynomial
+    cancels: bool = False
+
+
 class _Expansion:
-    """Multiplies out; notes whether a product of variables cancelled."""
+    """Multiplies out values, each once per depth; `atoms` keeps what products are made of."""
 
-    def __init__(self, atoms: dict[int, ir.Expr]) -> None:
-        self.atoms = atoms
-        self.cancels = False
+    def __init__(self) -> None:
+        self.atoms: dict[int, ir.Expr] = {}
+        self._known: dict[tuple[int, int], tuple[_Sum | None, ir.Expr]] = {}
 
-    def of(self, e: ir.Expr, depth: int) -> Polynomial | None:
+    def of(self, e: ir.Expr, depth: int) -> _Sum | None:
+        """The value multiplied out; None where that takes too many terms."""
+        key = id(e), depth
+        if key not in self._known:
+            self._known[key] = self.made(e, depth), e
+        return self._known[key][0]
+
+    def made(self, e: ir.Expr, depth: int) -> _Sum | None:
         numbers = constant_components(e)
         if numbers is not None:
             same = all(x == numbers[0] for x in numbers)
-            return {(): Fraction(float(numbers[0]))} if same else self.atom(e)
+            return _Sum({(): Fraction(float(numbers[0]))}) if same else self.atom(e)
         if depth > 0:
             match e:
                 case ir.Unary(op="negate"):
                     return _scaled(self.of(e.operand, depth - 1), Fraction(-1))
                 case ir.Binary(op="+" | "-" as op):
-                    return self.sum(self.of(e.left, depth - 1), self.of(e.right, depth - 1), op)
+                    return _added(self.of(e.left, depth - 1), self.of(e.right, depth - 1), op)
                 case ir.Binary(op="*"):
-                    return self.product(self.of(e.left, depth - 1), self.of(e.right, depth - 1))
+                    return _multiplied(self.of(e.left, depth - 1), self.of(e.right, depth - 1))
         return self.atom(e)
 
-    def atom(self, e: ir.Expr) -> Polynomial:
+    def atom(self, e: ir.Expr) -> _Sum:
         self.atoms[id(e)] = e
-        return {(id(e),): Fraction(1)}
-
-    def sum(self, a: Polynomial | None, b: Polynomial | None, op: str) -> Polynomial | None:
-        if a is None or b is None:
-            return None
-        total = dict(a)
-        for monomial, factor in b.items():
-            added = total.get(monomial, Fraction(0)) + (factor if op == "+" else -factor)
-            if added == 0 and factor != 0 and monomial:
-                self.cancels = True
-            total[monomial] = added
-        return total if len(total) <= MOST_TERMS else None
-
-    def product(self, a: Polynomial | None, b: Polynomial | None) -> Polynomial | None:
-        if a is None or b is None or len(a) * len(b) > MOST_TERMS:
-            return None
-        total: Polynomial = {}
-        for p, x in a.items():
-            for q, y in b.items():
-                monomial = tuple(sorted((*p, *q)))
-                total[monomial] = total.get(monomial, Fraction(0)) + x * y
-        return total
+        return _Sum({(id(e),): Fraction(1)})
 
 
-def _scaled(a: Polynomial | None, by: Fraction) -> Polynomial | None:
-    return None if a is None else {monomial: factor * by for monomial, factor in a.items()}
+def _added(a: _Sum | None, b: _Sum | None, op: str) -> _Sum | None:
+    if a is None or b is None:
+        return None
+    total, cancels = dict(a.terms), a.cancels or b.cancels
+    for monomial, factor in b.terms.items():
+        added = total.get(monomial, Fraction(0)) + (factor if op == "+" else -factor)
+        cancels = cancels or (added == 0 and factor != 0 and bool(monomial))
+        total[monomial] = added
+    return _Sum(total, cancels) if len(total) <= MOST_TERMS else None
+
+
+def _multiplied(a: _Sum | None, b: _Sum | None) -> _Sum | None:
+    if a is None or b is None or len(a.terms) * len(b.terms) > MOST_TERMS:
+        return None
+    total: Polynomial = {}
+    for p, x in a.terms.items():
+        for q, y in b.terms.items():
+            monomial = tuple(sorted((*p, *q)))
+            total[monomial] = total.get(monomial, Fraction(0)) + x * y
+    return _Sum(total, a.cancels or b.cancels)
+
+
+def _scaled(a: _Sum | None, by: Fraction) -> _Sum | None:
+    if a is None:
+        return None
+    return _Sum({monomial: factor * by for monomial, factor in a.terms.items()}, a.cancels)
 
 
 def _rebuilt(

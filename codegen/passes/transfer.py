@@ -19,7 +19,6 @@ from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
 from codegen.intervals.interpreter import reinterpreted
 from codegen.intervals.operations import VECTOR_BUILTINS, binary, scalar_builtin, unary
-from codegen.intervals.tables import Table
 from codegen.intervals.values import Range, Single, Truth, Whole, choose
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32, I32, Array, Type, Vector
@@ -56,9 +55,13 @@ class Transfer:
     def __init__(self, name: str) -> None:
         self.context = Context(load_table(name), CauseBook(), 1)
 
+    def signature(self, e: ir.Expr) -> int:
+        """A number that tables share if and only if they say the same of the expression's operation."""
+        return _signature_of(self.context.table.name, _operation(e))
+
     def apply(self, e: ir.Expr, parts: list[Bound]) -> Bound:
         """The value of an operation on values; not for leaves and calls."""
-        key = (*_words(e), _signature(self.context.table, _operation(e)), *map(id, parts))
+        key = (*_words(e), self.signature(e), *map(id, parts))
         return remembered(key, lambda: self.computed(e, parts), parts)
 
     def computed(self, e: ir.Expr, parts: list[Bound]) -> Bound:
@@ -137,11 +140,6 @@ def _signature_of(name: str, operation: str) -> int:
             row = table.row(each)
             shown.append(repr((row.accuracy, row.magnitude, row.reciprocal, row.zero, row.normal)))
     return _numbers.setdefault(_Said("\n".join(shown)), len(_numbers))
-
-
-def _signature(table: Table, operation: str) -> int:
-    """A number that tables share if and only if they say the same of an operation."""
-    return _signature_of(table.name, operation)
 
 
 def _either(a: Single, b: Single) -> Single:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -90,7 +91,11 @@ class Outcome:
 
 @dataclass
 class Builder:
-    """Builds one scene. `runtimes`: target -> runtime, or the reason why there is none."""
+    """Builds one scene.
+
+    runtimes   target -> runtime, or the reason why there is none
+    compilers  count instructions beside the proofs: `counting`, by general and final
+    """
 
     library: Library
     scene: Scene
@@ -98,6 +103,8 @@ class Builder:
     timed: bool = True
     say: Progress = lambda sentence: None
     results: Results = field(default_factory=dict)
+    compilers: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(2))
+    counting: dict[str, Future[int | None]] = field(default_factory=dict)
 
     def build(self) -> Outcome:
         """Everything but the files; raises UserError where nothing may be written."""
@@ -124,7 +131,12 @@ class Builder:
         executed = any(not isinstance(runtime, str) for runtime in self.runtimes.values())
         proven = draw(self.scene, general, PROOF_POINTS if executed else UNEXECUTED_POINTS, SEED + 1)
         exact = as_floats(evaluate(library, general.function.name, proven.inputs, "float64"))
-        results = [self.proven(library, general, reducer, r, proven, exact) for r in reduced.values()]
+        with self.compilers:
+            results = [self.proven(library, general, reducer, r, proven, exact) for r in reduced.values()]
+            left = self.remaining(library, results[0].reduced)
+        for result in results:
+            if result.target == "glsl":
+                result.spirv = {key: count.result() for key, count in self.counting.items()}
         error = None
         if pixels is not None:
             self.say("measuring the map")
@@ -134,7 +146,7 @@ class Builder:
             general=general,
             known=known,
             targets=results,
-            remaining=self.remaining(library, results[0].reduced),
+            remaining=left,
             environment=error,
             constant_lights=tuple(constant),
             seconds=time.perf_counter() - begin,
@@ -210,13 +222,14 @@ class Builder:
                 "exact": operations(reduced.exact.function),
                 "final": operations(reduced.final.function),
             },
-            lines=text.line_counts(library, self.scene, general, reduced),
+            lines=text.line_counts(library, self.scene, general, target, written),
             exact_proof=exact_proof,
             proof=final_proof,
             unavailable=reason,
         )
         if target == "glsl":
-            result.spirv = text.spirv_counts(library, self.scene, general, reduced, spirv.instructions)
+            texts = text.spirv_texts(library, self.scene, general, reduced)
+            self.counting = {key: self.compilers.submit(spirv.instructions, *t) for key, t in texts.items()}
         if runtime is not None and self.timed and final_proof.holds(self.scene.budget):
             self.say(f"timing on {target}")
             extended = library.with_functions([reduced.final.function])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from codegen.backends import dialect
@@ -90,34 +89,28 @@ def emitted(library: Library, scene: Scene, general: General, reduced: Reduced) 
     return file_text(chosen, head, guard_name(DEFAULT_PREFIX, scene.function, reduced.target), body)
 
 
-def line_counts(library: Library, scene: Scene, general: General, reduced: Reduced) -> dict[str, int]:
+def line_counts(
+    library: Library, scene: Scene, general: General, target: str, written: str
+) -> dict[str, int]:
     """Lines of code without comments: the general function with all it calls, and what is written."""
-    chosen = dialect(reduced.target, scene.dialects[reduced.target])
-    final = library.with_functions([reduced.final.function])
-    return {
-        "general": _code_lines(
-            emit_selection(library, chosen, library.select([general.function.name]), DEFAULT_PREFIX)
-        ),
-        "final": _code_lines(emit_selection(final, chosen, final.select([scene.function]), DEFAULT_PREFIX)),
-    }
+    chosen = dialect(target, scene.dialects[target])
+    before = emit_selection(library, chosen, library.select([general.function.name]), DEFAULT_PREFIX)
+    return {"general": _code_lines(before), "final": _code_lines(written.splitlines())}
 
 
 def _code_lines(lines: list[str]) -> int:
-    return sum(bool(line.strip()) and not line.lstrip().startswith("//") for line in lines)
+    """Lines that are neither empty nor a comment nor for the preprocessor."""
+    return sum(bool(line.strip()) and not line.lstrip().startswith(("//", "#")) for line in lines)
 
 
-def spirv_counts(
-    library: Library,
-    scene: Scene,
-    general: General,
-    reduced: Reduced,
-    count: Callable[[str, str], int | None],
-) -> dict[str, int | None]:
-    """SPIR-V instructions of both, from GLSL for Vulkan."""
+def spirv_texts(
+    library: Library, scene: Scene, general: General, reduced: Reduced
+) -> dict[str, tuple[str, str]]:
+    """GLSL for Vulkan of both, and the prefix of what is to be counted there."""
     chosen = dialect("glsl", "vulkan450")
     final = library.with_functions([reduced.final.function])
-    found: dict[str, int | None] = {}
+    found: dict[str, tuple[str, str]] = {}
     for key, source, name in (("general", library, general.function.name), ("final", final, scene.function)):
         lines = emit_selection(source, chosen, source.select([name]), DEFAULT_PREFIX)
-        found[key] = count("\n".join(lines), DEFAULT_PREFIX)
+        found[key] = "\n".join(lines), DEFAULT_PREFIX
     return found
