@@ -1,4 +1,4 @@
-"""python -m conformance.mutation: run mutants, print survivors, write the table of README.md."""
+"""python -m conformance.mutation: run mutants, print survivors, record draws, write README.md."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import json
 import sys
 from pathlib import Path
 
+from conformance.mutation import record, report
 from conformance.mutation.plan import groups
-from conformance.mutation.report import write
 from conformance.mutation.run import SEED, BaselineError, Result, all_jobs, run, sampled, tally
 
 
@@ -23,9 +23,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=SEED, help="seed of the sample")
     parser.add_argument("--file", default="", help="only mutants of files whose path holds this")
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument(
-        "--write", action="store_true", help="write the tables of a sample, too; those of whole groups always"
-    )
+    parser.add_argument("--record", action="store_true", help="keep the draw in results.json and README.md")
     parser.add_argument("--json", type=Path, help="write every outcome to this file")
     given = parser.parse_args()
     unknown = [name for name in given.groups if name not in groups()]
@@ -68,8 +66,11 @@ def main() -> int:
             for r in results
         ]
         given.json.write_text(json.dumps(rows, indent=1), encoding="utf-8")
-    if given.write or not (given.sampled or given.file):
-        write(found, given.seed)
+    if given.record and not given.file:
+        for name, results in found.items():
+            seed = given.seed if given.sampled else None
+            record.add(name, record.draw_of(results, seed, len(all_jobs(groups()[name]))))
+        report.write()
     return int(missed)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import gc
 import importlib
 import importlib.abc
 import importlib.machinery
@@ -18,11 +19,14 @@ import signal
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType
 from typing import Any
 
 import pytest
+
+from conformance.mutation.seen import Selection, Watch
 
 ROOT = Path(__file__).parents[2]
 QUIET = ("-q", "--no-header", "--tb=line", "--assert=plain", "-p", "no:cacheprovider")
@@ -30,7 +34,10 @@ QUIET = ("-q", "--no-header", "--tb=line", "--assert=plain", "-p", "no:cacheprov
 AGAIN = ("-W", "ignore::pytest.PytestAssertRewriteWarning")
 """Plugins that the first session has imported are not to be rewritten either."""
 
-SURVIVED, KILLED, TIMED_OUT = "survived", "killed", "timed out"
+SURVIVED, KILLED, TIMED_OUT, REFUSED = "survived", "killed", "timed out", "refused"
+"""What comes of a mutant; the front end refuses some changes of shading functions, which are no mutants."""
+NOTHING_NOTICED = (int(pytest.ExitCode.OK), int(pytest.ExitCode.NO_TESTS_COLLECTED))
+"""Exit statuses of a mutant that no test noticed; one that leaves no test to run goes on to all tests."""
 
 
 def warm_up(tests: Sequence[str]) -> int:
@@ -103,27 +110,80 @@ class _Finder(importlib.abc.MetaPathFinder):
         return importlib.util.spec_from_file_location(fullname, self.path, loader=loader)
 
 
-def run_tests(tests: Sequence[str], path: str, tree: ast.Module | None, stale: set[str]) -> int:
-    """Run tests in this process with a module replaced; returns pytest's exit status. For forks only."""
-    forget(stale)
-    if tree is not None:
-        sys.meta_path.insert(0, _Finder(path, tree))
-    return int(pytest.main(["-x", *QUIET, *AGAIN, *tests]))
+@dataclass(frozen=True)
+class Change:
+    """What a trial puts in place of a file: another tree of a module, another text of data, or nothing."""
+
+    path: str
+    tree: ast.Module | None = None
+    text: str | None = None
+
+    def put(self) -> None:
+        """From now on this process sees the change instead of the file."""
+        if self.tree is not None:
+            sys.meta_path.insert(0, _Finder(self.path, self.tree))
+        if self.text is not None:
+            _read_instead(ROOT / self.path, self.text)
+
+
+def _read_instead(changed: Path, text: str) -> None:
+    read_text = Path.read_text
+
+    def reading(self: Path, *arguments: Any, **named: Any) -> str:
+        return text if self == changed else read_text(self, *arguments, **named)
+
+    Path.read_text = reading  # type: ignore[method-assign]
+
+
+@dataclass(frozen=True)
+class Session:
+    """Tests to run in a fork.
+
+    tests     files and node ids, as pytest takes them
+    stale     modules to import anew
+    chosen    node ids to run alone, in that order; empty: all
+    excluded  node ids to leave out
+    without   beginnings of node ids to leave out
+    watched   files whose calls are noted, and
+    notes     where
+    """
+
+    tests: tuple[str, ...]
+    stale: frozenset[str]
+    chosen: tuple[str, ...] = ()
+    excluded: tuple[str, ...] = ()
+    without: tuple[str, ...] = ()
+    watched: tuple[str, ...] = ()
+    notes: Path | None = None
+
+    def run(self, change: Change) -> int:
+        """Run in this process with a file replaced; returns pytest's exit status. For forks only."""
+        forget(set(self.stale))
+        change.put()
+        plugins: list[Any] = [Selection(self.chosen, self.excluded, self.without)]
+        watch = Watch(ROOT, self.watched)
+        if self.notes is not None:
+            plugins.append(watch)
+        # Of a file whose chosen tests are known, nothing else is collected.
+        files = dict.fromkeys(name.partition("::")[0] for name in self.chosen)
+        status = int(pytest.main(["-x", *QUIET, *AGAIN, *(files or self.tests)], plugins=plugins))
+        if self.notes is not None:
+            watch.write(self.notes)
+        return status
 
 
 class Trial:
-    """One mutant under test in a fork of this process. `tree` None is the unchanged module."""
+    """One change under test in a fork of this process."""
 
-    def __init__(
-        self, tests: Sequence[str], path: str, tree: ast.Module | None, stale: set[str], limit: float
-    ) -> None:
+    def __init__(self, session: Session, change: Change, limit: float) -> None:
         self.deadline = time.monotonic() + limit
         self.read, write = os.pipe()
         sys.stdout.flush()
         sys.stderr.flush()
+        gc.freeze()  # pages that no collection touches stay shared
         self.pid = os.fork()
         if self.pid == 0:
-            _child(write, tests, path, tree, stale)
+            _child(write, session, change)
         os.close(write)
         self.output = b""
 
@@ -141,10 +201,10 @@ class Trial:
         _, status = os.waitpid(self.pid, 0)
         if not ended:
             return TIMED_OUT
-        return SURVIVED if os.waitstatus_to_exitcode(status) == 0 else KILLED
+        return SURVIVED if os.waitstatus_to_exitcode(status) in NOTHING_NOTICED else KILLED
 
 
-def _child(write: int, tests: Sequence[str], path: str, tree: ast.Module | None, stale: set[str]) -> None:
+def _child(write: int, session: Session, change: Change) -> None:
     """The fork: never returns."""
     code = 70
     try:
@@ -153,7 +213,7 @@ def _child(write: int, tests: Sequence[str], path: str, tree: ast.Module | None,
         os.dup2(write, 2)
         os.chdir(ROOT)
         sys.stdout = sys.stderr = io.TextIOWrapper(os.fdopen(write, "wb"), line_buffering=True)
-        code = run_tests(tests, path, tree, stale)
+        code = session.run(change)
         sys.stdout.flush()
     except BaseException as e:  # whatever a mutant does, the fork ends here
         with contextlib.suppress(Exception):

@@ -6,11 +6,12 @@ import ast
 import re
 import tomllib
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
-from conformance.mutation import python_rules, shader_rules
+from conformance.mutation import python_rules, shader_rules, table_rules
+from conformance.mutation.isolated import Change
 from conformance.mutation.sites import Mutant, mutants, mutated
 
 FOLDER = Path(__file__).parent
@@ -32,9 +33,15 @@ class Subject:
     path: str
     tests: tuple[str, ...]
 
-    @property
+    @cached_property
     def text(self) -> str:
+        """What the file holds; read once, so that all mutants are of one version."""
         return (ROOT / self.path).read_text(encoding="utf-8")
+
+    @property
+    def is_module(self) -> bool:
+        """Whether this is Python, and no table."""
+        return self.path.endswith(".py")
 
 
 @dataclass(frozen=True)
@@ -50,11 +57,16 @@ class Group:
     subjects: tuple[Subject, ...]
     first: tuple[int, int, int]
     second: tuple[int, int, int]
+    without: tuple[str, ...] = ()
 
 
 def _group(name: str, data: dict[str, Any]) -> Group:
     subjects = [
-        Subject(path, tuple(entry["tests"])) for entry in data.get("files", ()) for path in entry["paths"]
+        Subject(path, tuple(entry["tests"]))
+        for entry in data.get("files", ())
+        for pattern in entry["paths"]
+        for path in sorted(p.relative_to(ROOT).as_posix() for p in ROOT.glob(pattern))
+        if not path.endswith("__init__.py")
     ]
     if name == "library":
         found = sorted((ROOT / SHADER_SOURCES).glob("*/*.py"))
@@ -69,6 +81,7 @@ def _group(name: str, data: dict[str, Any]) -> Group:
         tuple(subjects),
         tuple(data.get("first", (0, 0, 0))),
         tuple(data.get("second", (0, 0, 0))),
+        tuple(data.get("without", ())),
     )
 
 
@@ -102,14 +115,23 @@ def _rule(group: str) -> Any:
 
 def mutants_of(group: Group, subject: Subject) -> list[Mutant]:
     """Every mutant of a file of a group."""
+    if not subject.is_module:
+        return table_rules.mutants(subject.path, subject.text)
     return [*planted(group.name, subject.path), *mutants(subject.path, subject.text, _rule(group.name))]
 
 
 def tree_of(group: Group, subject: Subject, mutant: Mutant) -> ast.Module:
-    """The file as the mutant has it."""
+    """The module as the mutant has it."""
     if mutant.index == PLANTED:
         return _planted_tree(group.name, mutant, subject.text)
     return mutated(subject.text, _rule(group.name), mutant.index)
+
+
+def change_of(group: Group, subject: Subject, mutant: Mutant) -> Change:
+    """What a trial of the mutant puts in the file's place."""
+    if not subject.is_module:
+        return Change(subject.path, text=table_rules.mutated(subject.text, mutant.index))
+    return Change(subject.path, tree_of(group, subject, mutant))
 
 
 @dataclass(frozen=True)

@@ -60,7 +60,18 @@ CALLS = {
     "RIGHT": "LEFT",
 }
 """Names that are exchanged, as plain names and as attributes."""
-SYMMETRIC = {"minimum", "maximum", "min", "max", "isinstance", "asarray", "logical_and", "logical_or"}
+SYMMETRIC = {
+    "minimum",
+    "maximum",
+    "min",
+    "max",
+    "isinstance",
+    "asarray",
+    "logical_and",
+    "logical_or",
+    "all_of",
+    "any_of",
+}
 """Functions whose arguments are not exchanged: nothing would change, or only a type error would come."""
 TRANSPARENT = {"abs", "sqrt", "isfinite", "normalised", "bare", "sorted", "reversed"}
 """Functions whose call is replaced by its argument."""
@@ -76,9 +87,24 @@ def changed(node: N, **fields: object) -> N:
 
 def rule(node: ast.AST) -> Iterator[Offer]:
     """Every operator of this file on one node."""
+    _mark_unordered(node)
     yield from _expression(node)
     yield from _collection(node)
     yield from _statement(node)
+
+
+def _mark_unordered(node: ast.AST) -> None:
+    """Members to look up and exceptions to catch have no order.
+
+    A parent is visited before its parts, which carry the mark.
+    """
+    match node:
+        case ast.Compare(ops=[ast.In() | ast.NotIn()], comparators=[ast.Tuple() as unordered]):
+            unordered.unordered = True  # type: ignore[attr-defined]
+        case ast.Call(func=ast.Name(id="isinstance"), args=[_, ast.Tuple() as unordered]):
+            unordered.unordered = True  # type: ignore[attr-defined]
+        case ast.ExceptHandler(type=ast.Tuple() as unordered):
+            unordered.unordered = True  # type: ignore[attr-defined]
 
 
 def _expression(node: ast.AST) -> Iterator[Offer]:
@@ -154,7 +180,7 @@ def _collection(node: ast.AST) -> Iterator[Offer]:
         case ast.Set(elts=elements) if len(elements) > 1:
             for k in range(len(elements)):
                 yield "element dropped", changed(node, elts=[*elements[:k], *elements[k + 1 :]])
-        case ast.Tuple(elts=[first, second, *rest], ctx=ast.Load()):
+        case ast.Tuple(elts=[first, second, *rest], ctx=ast.Load()) if not hasattr(node, "unordered"):
             yield "elements exchanged", changed(node, elts=[second, first, *rest])
         case ast.comprehension(ifs=[_, *_]):
             yield "filter dropped", changed(node, ifs=[])

@@ -1,33 +1,17 @@
-"""The generated part of README.md: figures per group, survivors, equivalent mutants with their reasons."""
+"""The generated part of README.md: all draws, and of each group's last one its files and survivors."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from scipy.stats import beta
 
-from conformance.mutation.isolated import SURVIVED
-from conformance.mutation.plan import excuse, groups
-from conformance.mutation.run import EQUIVALENT, SEED, Result, all_jobs, tally
+from conformance.mutation.plan import groups
+from conformance.mutation.record import FILE_COLUMNS, Draw, read
 
 README = Path(__file__).parent / "README.md"
-BEGIN, END = "<!-- {}: written by python -m conformance.mutation -->", "<!-- end of {} -->"
-
-
-def _table(results: Sequence[Result]) -> list[str]:
-    rows = ["| file | mutants | killed | equivalent | survived |", "|---|--:|--:|--:|--:|"]
-    by_file: dict[str, list[Result]] = {}
-    for r in results:
-        if r.outcome != "refused":
-            folder = r.mutant.path.rpartition("/")[0]
-            shown = f"{folder}/" if folder.startswith("shaderlib") else r.mutant.path
-            by_file.setdefault(shown, []).append(r)
-    for path, some in sorted(by_file.items()):
-        t = tally(some)
-        rows.append(f"| {path} | {len(some)} | {t.killed} | {t.equivalent} | {t.survived} |")
-    return rows
+BEGIN, END = "<!-- results: written by python -m conformance.mutation --record -->", "<!-- end of results -->"
 
 
 def confidence(killed: int, tried: int, level: float = 0.95) -> tuple[float, float]:
@@ -38,41 +22,74 @@ def confidence(killed: int, tried: int, level: float = 0.95) -> tuple[float, flo
     return low, high
 
 
-def section(name: str, results: Sequence[Result], seed: int = SEED) -> str:
-    """The text of one group; `seed` is that of the sample."""
-    group, t = groups()[name], tally(results)
-    total = len(all_jobs(group))
-    tried = sampling = ""
-    if len(results) != total:
-        tried = f"A sample of {len(results)} out of {total} changes: "
-        low, high = confidence(t.killed, t.killed + t.survived)
-        sampling = f" The share of all of them lies between {low:.1%} and {high:.1%} (confidence 95 %)."
-        sampling += f" `python -m conformance.mutation {name} --sampled --count {len(results)} --seed {seed}`"
-    refused = f" (and {t.refused} that the front end refuses)" if t.refused else ""
+def _share(draw: Draw) -> str:
+    tried = draw["killed"] + draw["survived"]
+    return f"{draw['killed'] / max(tried, 1):.1%}"
+
+
+def _row(name: str, draw: Draw, last: bool) -> str:
+    tried = draw["killed"] + draw["survived"]
+    low, high = confidence(draw["killed"], tried)
+    seed = "all" if draw["seed"] is None else str(draw["seed"])
+    share = f"**{_share(draw)}**" if last else _share(draw)
+    return (
+        f"| {name if last else ''} | {draw['date']} | {seed} | {tried} of {draw['of']} | {draw['killed']} | "
+        f"{draw['equivalent']} | {share} | {low:.1%} to {high:.1%} | {groups()[name].share:.0%} |"
+    )
+
+
+def overview(found: Mapping[str, Sequence[Draw]]) -> list[str]:
+    """All draws, the last one of a group first."""
     lines = [
-        f"### {name}: {group.what}",
-        "",
-        f"{tried}{t.killed} of {t.killed + t.survived} mutants killed{refused}: {t.share:.1%}; "
-        f"{group.share:.0%} are required. {t.equivalent} more are equivalent.{sampling}",
-        "",
-        *_table(results),
+        "| group | drawn | seed | mutants tried | killed | equivalent besides | share | "
+        "of all, confidence 95 % | required |",
+        "|---|---|--:|--:|--:|--:|--:|--:|--:|",
     ]
-    survivors = [r.mutant for r in results if r.outcome == SURVIVED]
-    if survivors:
-        lines += ["", "Survivors:", "", *(f"- `{mutant}`" for mutant in survivors)]
-    reasons = Counter(excuse(r.mutant) for r in results if r.outcome == EQUIVALENT)
-    if reasons:
+    for name in groups():
+        for k, draw in enumerate(reversed(found.get(name, ()))):
+            lines.append(_row(name, draw, k == 0))
+    return lines
+
+
+def section(name: str, draw: Draw) -> list[str]:
+    """The last draw of a group: its files, survivors and equivalent mutants."""
+    sampled = "" if draw["seed"] is None else f" --sampled --count {_count(draw)} --seed {draw['seed']}"
+    lines = [
+        f"### {name}: {groups()[name].what}",
+        "",
+        f"`python -m conformance.mutation {name}{sampled}`{_pace(draw)}.",
+        "",
+        f"| file | {' | '.join(FILE_COLUMNS)} |",
+        "|---|--:|--:|--:|--:|",
+        *(f"| {path} | {' | '.join(map(str, row))} |" for path, row in draw["files"].items()),
+    ]
+    if draw["survivors"]:
+        lines += ["", "Survivors:", "", *(f"- `{mutant}`" for mutant in draw["survivors"])]
+    if draw["reasons"]:
         lines += ["", "Equivalent mutants by reason:", ""]
-        lines += [f"- {count}: {reason}" for reason, count in reasons.most_common()]
+        lines += [f"- {count}: {reason}" for reason, count in draw["reasons"].items()]
+    return lines
+
+
+def _pace(draw: Draw) -> str:
+    return "" if draw["seconds"] is None else f"; {draw['seconds']} s a mutant, two at a time"
+
+
+def _count(draw: Draw) -> int:
+    return int(draw["killed"] + draw["survived"] + draw["equivalent"] + draw["refused"])
+
+
+def text(found: Mapping[str, Sequence[Draw]]) -> str:
+    """Everything between the marks."""
+    lines = overview(found)
+    for name in groups():
+        if found.get(name):
+            lines += ["", *section(name, found[name][-1])]
     return "\n".join(lines)
 
 
-def write(found: Mapping[str, Sequence[Result]], seed: int = SEED) -> None:
-    """Replace the sections of these groups."""
-    text = README.read_text(encoding="utf-8")
-    for name, results in found.items():
-        begin, end = BEGIN.format(name), END.format(name)
-        before, _, rest = text.partition(begin)
-        _, _, after = rest.partition(end)
-        text = f"{before}{begin}\n\n{section(name, results, seed)}\n\n{end}{after}"
-    README.write_text(text, encoding="utf-8")
+def write() -> None:
+    """Replace the generated part of README.md."""
+    before, _, rest = README.read_text(encoding="utf-8").partition(BEGIN)
+    _, _, after = rest.partition(END)
+    README.write_text(f"{before}{BEGIN}\n\n{text(read())}\n\n{END}{after}", encoding="utf-8")

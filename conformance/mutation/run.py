@@ -3,18 +3,35 @@
 from __future__ import annotations
 
 import random
+import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
+from pathlib import Path
 
-from conformance.mutation.isolated import KILLED, SURVIVED, TIMED_OUT, Trial, dependants, warm_up
-from conformance.mutation.plan import Group, Subject, excuse, mutants_of, tree_of
+from conformance.mutation.isolated import (
+    KILLED,
+    REFUSED,
+    SURVIVED,
+    TIMED_OUT,
+    Change,
+    Session,
+    Trial,
+    dependants,
+    warm_up,
+)
+from conformance.mutation.plan import Group, Subject, change_of, excuse, mutants_of
+from conformance.mutation.seen import Seen
 from conformance.mutation.sites import Mutant
 
 SEED = 20_260
 EQUIVALENT = "equivalent"
+TABLES_MODULE = "codegen.intervals.tables"
+"""The module that reads the accuracy tables."""
+LEAST_LIMIT, SLOWER = 20.0, 10.0
+"""A mutant may take so many seconds, and so many times as long as the tests do without it."""
 
 Job = tuple[Subject, Mutant]
 Told = Callable[["Result"], None]
@@ -26,7 +43,7 @@ class BaselineError(Exception):
 
 @dataclass(frozen=True)
 class Result:
-    """What came of one mutant: KILLED, SURVIVED, EQUIVALENT, TIMED_OUT or, in the library, "refused"."""
+    """What came of one mutant: KILLED, SURVIVED, EQUIVALENT, TIMED_OUT or, in the library, REFUSED."""
 
     mutant: Mutant
     outcome: str
@@ -60,26 +77,98 @@ def _settled(mutant: Mutant, outcome: str, seconds: float) -> Result:
     return Result(mutant, EQUIVALENT if known else outcome, seconds)
 
 
-def _try_modules(group: Group, jobs: Sequence[Job], workers: int) -> Iterator[Result]:
-    """File by file, so that what a file's mutants share is prepared once."""
-    for subject in dict.fromkeys(subject for subject, _ in jobs):
-        warm_up(subject.tests)
-        stale = dependants(subject.path.removesuffix(".py").replace("/", "."))
-        trial = Trial(subject.tests, subject.path, None, stale, 4 * group.limit)
+@dataclass
+class Prepared:
+    """What the mutants of some files share: tests, modules to import anew, and which test sees what."""
+
+    session: Session
+    seen: Seen
+    subject: Subject
+
+    @property
+    def limit(self) -> float:
+        """Seconds for all tests of one mutant: many times what they take, on a machine that is shared."""
+        return LEAST_LIMIT + SLOWER * self.seen.seconds
+
+
+def prepare(group: Group, subjects: Sequence[Subject]) -> dict[Subject, Prepared]:
+    """Import what the tests need, run them once without a mutant, watched. Raises BaselineError.
+
+    The subjects share their tests.
+    """
+    tests, paths = subjects[0].tests, tuple(s.path for s in subjects)
+    if warm_up(tests):
+        raise BaselineError(f"{' '.join(tests)} cannot be collected")
+    stale = {s: frozenset(dependants(module_of(s.path))) for s in subjects}
+    with tempfile.TemporaryDirectory() as folder:
+        notes = Path(folder) / "seen.json"
+        union = frozenset[str]().union(*stale.values())
+        watched = Session(tests, union, without=group.without, watched=paths, notes=notes)
+        trial = Trial(watched, Change(paths[0]), 20 * group.limit)
         if trial.wait() != SURVIVED:
             told = trial.output.decode(errors="replace")[-3000:]
-            raise BaselineError(f"{' '.join(subject.tests)} fail without a mutant:\n{told}")
-        running: list[tuple[Mutant, Trial, float]] = []
-        waiting = [mutant for s, mutant in jobs if s == subject][::-1]
+            raise BaselineError(f"{' '.join(tests)} fail without a mutant:\n{told}")
+        seen = Seen.read(notes)
+    return {s: Prepared(Session(tests, stale[s], without=group.without), seen, s) for s in subjects}
+
+
+def module_of(path: str) -> str:
+    """The module whose import reads a file: its own, or the one that loads tables."""
+    return path.removesuffix(".py").replace("/", ".") if path.endswith(".py") else TABLES_MODULE
+
+
+def attempt(group: Group, ready: Prepared, mutant: Mutant) -> Iterator[Trial]:
+    """First the tests that see the changed function, quickest first, then all others."""
+    subject = ready.subject
+    change = change_of(group, subject, mutant)
+    seeing = tuple(ready.seen.by(subject.path, subject.text, mutant.line)) if subject.is_module else ()
+    if seeing:
+        yield Trial(replace(ready.session, chosen=seeing), change, ready.limit)
+    others = replace(ready.session, excluded=seeing)
+    if len(seeing) < len(ready.seen.tests):
+        yield Trial(others, change, ready.limit)
+
+
+def _try_modules(group: Group, jobs: Sequence[Job], workers: int) -> Iterator[Result]:
+    """Files with the same tests together, so that what their mutants share is prepared once."""
+    together: dict[tuple[str, ...], list[Subject]] = {}
+    for subject in dict.fromkeys(subject for subject, _ in jobs):
+        together.setdefault(subject.tests, []).append(subject)
+    for subjects in together.values():
+        ready = prepare(group, subjects)
+        waiting = [job for job in jobs if job[0] in ready][::-1]
+        running: list[_Running] = []
         while waiting or running:
             while waiting and len(running) < workers:
-                mutant = waiting.pop()
-                tree = tree_of(group, subject, mutant)
-                trial = Trial(subject.tests, subject.path, tree, stale, group.limit)
-                running.append((mutant, trial, time.perf_counter()))
-            mutant, trial, started = running.pop(0)
-            outcome = trial.wait()
-            yield _settled(mutant, outcome, time.perf_counter() - started)
+                subject, mutant = waiting.pop()
+                running.append(_Running(mutant, attempt(group, ready[subject], mutant)))
+            first = running.pop(0)
+            if first.wait() == SURVIVED and first.go_on():
+                running.append(first)
+            else:
+                yield _settled(first.mutant, first.outcome, first.seconds)
+
+
+class _Running:
+    """A mutant on its way through its trials."""
+
+    def __init__(self, mutant: Mutant, trials: Iterator[Trial]) -> None:
+        self.mutant, self.trials, self.seconds = mutant, trials, 0.0
+        self.outcome = SURVIVED
+        self.go_on()
+
+    def go_on(self) -> bool:
+        """Start the next trial, if there is one."""
+        self.started = time.perf_counter()
+        self.trial = next(self.trials, None)
+        return self.trial is not None
+
+    def wait(self) -> str:
+        """What came of the trial under way."""
+        if self.trial is not None:
+            self.outcome = self.trial.wait()
+            self.seconds += time.perf_counter() - self.started
+        return self.outcome
 
 
 def _try_shaders(group: Group, jobs: Sequence[Job], workers: int) -> Iterator[Result]:
@@ -116,4 +205,4 @@ def tally(results: Sequence[Result]) -> Tally:
     def count(*outcomes: str) -> int:
         return sum(r.outcome in outcomes for r in results)
 
-    return Tally(count(KILLED, TIMED_OUT), count(SURVIVED), count(EQUIVALENT), count("refused"))
+    return Tally(count(KILLED, TIMED_OUT), count(SURVIVED), count(EQUIVALENT), count(REFUSED))

@@ -21,13 +21,11 @@ from codegen.library import Library, default_root, load_library
 from conformance.check import engine
 from conformance.check.engine import Draw
 from conformance.execute.further import codomains, leaves_codomain, with_further_bounds
-from conformance.mutation.isolated import KILLED, SURVIVED
+from conformance.mutation.isolated import KILLED, REFUSED, SURVIVED
 from conformance.mutation.plan import Group, Subject, tree_of
 from conformance.mutation.sites import Mutant
 from conformance.reference import PROPERTY_ONLY
 
-REFUSED = "refused"
-"""The front end refuses the changed source: no mutant."""
 TABLE = "wgsl"
 """Whose guarantees a mutant must not lose: many a guard is there for what other targets may do."""
 

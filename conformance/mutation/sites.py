@@ -81,8 +81,12 @@ def _is_text(node: ast.AST) -> bool:
 
 
 def _is_alias(node: ast.AST) -> bool:
-    """Run = Callable[[int], int] at top level."""
-    return isinstance(node, ast.Assign) and isinstance(node.value, ast.Subscript)
+    """Run = Callable[[int], int] or N = TypeVar("N", int, float) at top level."""
+    if not isinstance(node, ast.Assign):
+        return False
+    made = node.value
+    is_variable = isinstance(made, ast.Call) and isinstance(made.func, ast.Name) and made.func.id == "TypeVar"
+    return is_variable or isinstance(made, ast.Subscript)
 
 
 def _children(node: ast.AST) -> Iterator[tuple[Any, str | int, ast.AST]]:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from codegen.frontend.constants import to_float32
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Finite, Interval, Length, Unit
 from codegen.ir.types import BOOL, F32, I32, U32, UVEC3, VEC2, VEC3, VEC4, Struct, Type
@@ -140,6 +141,41 @@ def test_locals_are_inferred_and_mutable_where_assigned_again(tmp_path: Path) ->
     assert body[0] == ir.Let("a", V)
     assert body[1] == ir.Let("b", X, mutable=True)
     assert body[2] == ir.Assign("b", ir.Binary(F32, "+", var("b"), f32(1.0)))
+
+
+def test_locals_inside_blocks_are_mutable_where_assigned_again(tmp_path: Path) -> None:
+    body = body_of(tmp_path, NESTED)
+    loop = next(s for s in body if isinstance(s, ir.For))
+    branch = next(s for s in loop.body if isinstance(s, ir.If))
+    lets = [s for s in (*loop.body, *branch.then, *branch.orelse) if isinstance(s, ir.Let)]
+    assert {s.name: s.mutable for s in lets} == {"b": True, "c": False, "d": True, "e": True}
+
+
+NESTED = """
+a = 0.0
+for i in range(3):
+    b = x
+    c = x
+    b += 1.0
+    if flag:
+        d = b
+        d += c
+        a += d
+    else:
+        e = c
+        e *= 2.0
+        a += e
+return a
+"""
+
+
+def test_constants_that_float32_does_not_hold_are_none() -> None:
+    """Beyond the largest number nothing is near; below the smallest normal one a target may read 0."""
+    smallest, largest = float(np.finfo(np.float32).tiny), float(np.finfo(np.float32).max)
+    assert [to_float32(x) for x in (smallest, -smallest, largest, 0.0)] == [smallest, -smallest, largest, 0.0]
+    assert to_float32(float(np.nextafter(np.float32(smallest), np.float32(0.0)))) is None
+    assert to_float32(1.01 * largest) is None
+    assert to_float32(float("nan")) is None
 
 
 def test_typed_constant_gives_a_local_its_type(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -229,6 +230,29 @@ def test_literals_are_as_short_as_possible() -> None:
         if fewer and same_float(float(f"{value:.{fewer}g}"), value):
             wrong.append((value.hex(), text))
     assert not wrong
+
+
+WRITTEN = {
+    0.0: "0.0",
+    0.5: "0.5",
+    1.0: "1.0",
+    0.1: "0.1",
+    -2.25: "-2.25",
+    1e-4: "0.0001",
+    9.0e-5: "9e-5",
+    1.25e-5: "1.25e-5",
+    9999999.0: "9999999.0",
+    1e7: "1e7",
+    16777216.0: "1.6777216e7",
+    1e30: "1e30",
+}
+"""As a person would write them: with an exponent only below 1e-4 and from 1e7 on."""
+
+
+@pytest.mark.parametrize("value", WRITTEN)
+def test_literals_are_written_as_a_person_would(value: float) -> None:
+    assert shortest(float(np.float32(value))) == WRITTEN[value]
+
 
 
 @pytest.mark.parametrize("dialect", ONE_PER_TARGET, ids=dialect_id)
