@@ -23,11 +23,16 @@ def _permuted(a: Array) -> Array:
 def _colours(type_: Type, domain: Any, value: Any) -> Any:
     if isinstance(type_, Struct):
         return {f.name: _colours(f.type, f.domain, value[f.name]) for f in type_.fields}
-    return _permuted(value) if type_ == VEC3 and isinstance(domain, Interval) else value
+    return _permuted(value) if type_ == VEC3 and _is_colour(domain) else value
+
+
+def _is_colour(domain: Any) -> bool:
+    """A vec3 whose components are numbers from 0 on; texels of a tangent map have negative ones, too."""
+    return isinstance(domain, Interval) and domain.low >= 0.0
 
 
 def permute_inputs(function: Function, inputs: Inputs, choice: Choice) -> dict[str, Any]:
-    """Permute the channels of every vec3 whose domain is an interval."""
+    """Permute the channels of every colour."""
     return {p.name: _colours(p.type, p.domain, inputs[p.name]) for p in function.parameters}
 
 
