@@ -10,6 +10,7 @@ from rich.console import Console
 
 from codegen.errors import UserError
 from codegen.factors.homomorphic import Factors, FitError, Settings, error, factorise
+from codegen.factors.maps import SHADES
 from codegen.factors.samples import read_samples
 from codegen.factors.source import draw_samples
 from codegen.factors.waterloo import read_waterloo, waterloo_files
@@ -32,7 +33,11 @@ FORMATS = ("exr", "waterloo")
 @click.option("--samples", default=60_000, show_default=True, help="Pairs of directions that are drawn.")
 @click.option("--size-p", default=16, show_default=True, help="Texels along a side of p(v) and p(l).")
 @click.option("--size-q", default=32, show_default=True, help="Texels along a side of q(h).")
-@click.option("--size-r", default=0, show_default=True, help="Texels along a side of r(t.l, t.v); 0: no r.")
+@click.option("--size-r", default=0, show_default=True, help="Texels along a side of r; 0: no r.")
+@click.option("--angles", default=Settings.angles, show_default=True, help="What r follows: along or across.")
+@click.option(
+    "--emphasis", default=Settings.emphasis, show_default=True, help="Relative 0 ... 1 absolute error."
+)
 @click.option("--smoothness", default=Settings.smoothness, show_default=True)
 @click.option("--format", "kind", default="exr", show_default=True, help="exr, or waterloo (8 bit).")
 def command(
@@ -44,6 +49,8 @@ def command(
     size_p: int,
     size_q: int,
     size_r: int,
+    angles: str,
+    emphasis: float,
     smoothness: float,
     kind: str,
 ) -> None:
@@ -55,7 +62,7 @@ def command(
     if kind not in FORMATS:
         raise UserError(f'unknown format "{kind}"; valid names: {", ".join(FORMATS)}')
     console = Console(stderr=True)
-    how = Settings(size_p, size_q, size_r, smoothness)
+    how = Settings(size_p, size_q, size_r, smoothness, angles=angles, emphasis=emphasis)
     with console.status("fitting"):
         factors, measured, name = fitted(source, numbers(settings), diffuse, samples, how)
     write_folder(output, files(factors, measured, name, kind))
@@ -94,12 +101,15 @@ def files(factors: Factors, measured: FitError | None, name: str, kind: str) -> 
     images = {"p.exr": exr(factors.p), "q.exr": exr(factors.q)}
     if factors.r is not None:
         images["r.exr"] = exr(factors.r)
+    angles = factors.angles if factors.r is not None else ""
     manifest = {
-        "schema": 1,
+        "schema": 2,
         "version": VERSION,
         "name": name,
-        "formula": "scale p(v) q(h) p(l)" + (" r(t.l, t.v)" if factors.r is not None else ""),
-        "frame": "x tangent, z normal; p and q over parabolic_uv, r over strand_table_uv",
+        "formula": "scale p(v) q(h) p(l)" + (" r" if factors.r is not None else ""),
+        "frame": "x tangent, z normal; p and q over parabolic_uv; the ends of r are at texel centres",
+        "function": SHADES[angles],
+        "angles": angles,
         "scale": [float(f"{x:.9g}") for x in factors.scale],
         "error": None if measured is None else {k: _short(x) for k, x in vars(measured).items()},
     }

@@ -2,8 +2,8 @@
 
 McCool, Ang and Ahmad 2001, Homomorphic Factorization of BRDFs for High-Performance Rendering: sparse linear
 least squares minimise the relative error, smoothness fills texels that no sample reaches, and all factors
-come out positive. One factor more, r(t.l, t.v), follows the cosines with the tangent t = x: without it no
-number of texels fits lobes that are functions of these two angles, such as a strand's.
+come out positive. One factor more, r, follows two angles: of light and viewer along the tangent x, for lobes
+of a strand, or about it, for cloth whose threads hide each other. Without it no number of texels fits these.
 """
 
 from __future__ import annotations
@@ -15,13 +15,15 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import lsmr
 
-from codegen.errors import UserError
+from codegen.errors import UserError, unknown
 from codegen.factors.grids import bends, rows, taps
 from codegen.factors.samples import FEWEST, Samples
 from codegen.maps.bilinear import lookup
 
 Array = npt.NDArray[np.float64]
 SIZES = (2, 512)
+ANGLES = ("along", "across")
+"""What r follows: asin(w.x), as `strand_table_uv`, or atan2(w.y, w.z), as `factored_satin_shade`."""
 ITERATIONS = 600
 
 
@@ -29,8 +31,10 @@ ITERATIONS = 600
 class Settings:
     """Texels along a side of p, q, r (0: no r), the weight of smoothness, the smallest value that counts.
 
-    floor  relative to the largest value: smaller ones are fitted as this, or the logarithm of what nobody
-           sees would rule the fit
+    floor     relative to the largest value: smaller ones are fitted as this, or the logarithm of what nobody
+              sees would rule the fit
+    angles    which two angles r follows, one of ANGLES
+    emphasis  0: every sample's relative error counts alike; 1: the error of what is seen, value times l.z
     """
 
     size_p: int = 16
@@ -38,24 +42,30 @@ class Settings:
     size_r: int = 0
     smoothness: float = 0.05
     floor: float = 1e-4
+    angles: str = "along"
+    emphasis: float = 0.0
 
 
 @dataclass(frozen=True)
 class Factors:
-    """scale (channels,), p and q (size, size, channels) over parabolic maps, r alike or None."""
+    """scale (channels,), p and q (size, size, channels) over parabolic maps, r over two angles or None.
+
+    The ends of r's axes are the centres of its outermost texels.
+    """
 
     scale: Array
     p: Array
     q: Array
     r: Array | None = None
+    angles: str = "along"
 
     def value(self, l: npt.ArrayLike, v: npt.ArrayLike) -> Array:  # the catalogue's name
-        """scale p(v) q(h) p(l) r(t.l, t.v) of unit directions (n, 3), (n, channels); no cosine."""
+        """scale p(v) q(h) p(l) r(angles) of unit directions (n, 3), (n, channels); no cosine."""
         to_light, to_viewer = np.asarray(l, np.float64), np.asarray(v, np.float64)
         found = self.scale * lookup(self.p, parabolic_uv(to_viewer)) * lookup(self.p, parabolic_uv(to_light))
         found = found * lookup(self.q, parabolic_uv(half_vector(to_light, to_viewer)))
         if self.r is not None:
-            found = found * lookup(self.r, cosines_uv(to_light, to_viewer))
+            found = found * lookup(self.r, angles_uv(to_light, to_viewer, self.angles, len(self.r)))
         return np.asarray(found)
 
 
@@ -82,10 +92,12 @@ def half_vector(l: Array, v: Array) -> Array:  # the catalogue's name
     return np.asarray(np.where(length > 1e-12, h / np.maximum(length, 1e-12), [0.0, 0.0, 1.0]))
 
 
-def cosines_uv(l: Array, v: Array) -> Array:  # the catalogue's name
-    """Angle-warped coordinates asin(c) / pi + 1/2 of the cosines with the tangent x, as `strand_table_uv`."""
-    c = np.clip(np.stack([l[..., 0], v[..., 0]], axis=-1), -1.0, 1.0)
-    return np.asarray(np.arcsin(c) / np.pi + 0.5)
+def angles_uv(l: Array, v: Array, angles: str, size: int) -> Array:  # the catalogue's name
+    """Coordinates of two angles in a table of that size: 0 and 1 are the centres of its outermost texels."""
+    w = np.stack([l, v], axis=-2)
+    along = angles == "along"
+    turn = np.arcsin(np.clip(w[..., 0], -1.0, 1.0)) if along else np.arctan2(w[..., 1], w[..., 2])
+    return np.asarray((np.clip(turn / np.pi + 0.5, 0.0, 1.0) * (size - 1) + 0.5) / size)
 
 
 def factorise(samples: Samples, settings: Settings = Settings()) -> Factors:  # frozen
@@ -99,13 +111,15 @@ def factorise(samples: Samples, settings: Settings = Settings()) -> Factors:  # 
         raise UserError(f"{len(known)} samples have a value above 0; a fit needs {FEWEST}")
     matrix, sizes = _matrix(known, settings)
     log = np.log(np.maximum(known.value, settings.floor * known.value.max(axis=0)))
-    padded = np.zeros(matrix.shape[0])
+    padded, weight = np.zeros(matrix.shape[0]), np.ones(matrix.shape[0])
     solutions = []
-    for channel in log.T:
-        padded[: len(channel)] = channel
-        solutions.append(lsmr(matrix, padded, atol=1e-8, btol=1e-8, maxiter=ITERATIONS)[0])
+    for channel, weights in zip(log.T, _weights(known, log, settings.emphasis).T, strict=True):
+        weight[: len(channel)] = weights
+        padded[: len(channel)] = weights * channel
+        weighted = sparse.diags_array(weight) @ matrix
+        solutions.append(lsmr(weighted, padded, atol=1e-8, btol=1e-8, maxiter=ITERATIONS)[0])
     images = _images(np.stack(solutions, axis=-1), sizes)
-    return _normalised(images)
+    return _normalised(images, settings.angles)
 
 
 def error(factors: Factors, samples: Samples, floor: float = Settings.floor) -> FitError:
@@ -135,6 +149,16 @@ def _check(settings: Settings) -> None:
         raise UserError(
             f"smoothness {settings.smoothness:g}: it must be above 0, or texels without samples float"
         )
+    if settings.angles not in ANGLES:
+        raise unknown("angles of r", settings.angles, ANGLES)
+    if not 0.0 <= settings.emphasis <= 1.0:
+        raise UserError(f"emphasis {settings.emphasis:g}: it is in [0, 1], from relative to absolute error")
+
+
+def _weights(samples: Samples, log: Array, emphasis: float) -> Array:
+    """What the rows of the samples count, (n, channels), 1 in the mean of squares."""
+    seen = (np.exp(log) * np.maximum(samples.l[:, 2:], 1e-6)) ** emphasis
+    return np.asarray(seen / np.sqrt((seen**2).mean(axis=0)))
 
 
 def _matrix(samples: Samples, settings: Settings) -> tuple[sparse.csr_array, list[int]]:
@@ -144,7 +168,8 @@ def _matrix(samples: Samples, settings: Settings) -> tuple[sparse.csr_array, lis
     p = p + rows(taps(parabolic_uv(samples.l), sizes[0]), sizes[0])
     blocks = [p, rows(taps(parabolic_uv(half_vector(samples.l, samples.v)), sizes[1]), sizes[1])]
     if settings.size_r:
-        blocks.append(rows(taps(cosines_uv(samples.l, samples.v), sizes[2]), sizes[2]))
+        turns = angles_uv(samples.l, samples.v, settings.angles, sizes[2])
+        blocks.append(rows(taps(turns, sizes[2]), sizes[2]))
     # One unit of smoothness weighs as much as the samples that a texel has on average.
     smooth = []
     for size in sizes:
@@ -161,9 +186,9 @@ def _images(solution: Array, sizes: list[int]) -> list[Array]:
     return [part.reshape(size, size, -1) for part, size in zip(parts, sizes, strict=True)]
 
 
-def _normalised(logs: list[Array]) -> Factors:
+def _normalised(logs: list[Array], angles: str) -> Factors:
     """Factors whose largest texel is 1 in each channel; p counts twice in the scale."""
     peaks = [image.max(axis=(0, 1)) for image in logs]
     p, q, *r = (np.exp(image - peak) for image, peak in zip(logs, peaks, strict=True))
     scale = np.exp(2.0 * peaks[0] + sum(peaks[1:]))
-    return Factors(np.asarray(scale), p, q, r[0] if r else None)
+    return Factors(np.asarray(scale), p, q, r[0] if r else None, angles)

@@ -17,16 +17,10 @@ from codegen.factors.source import draw_samples
 from codegen.factors.waterloo import read_waterloo, waterloo_files
 from codegen.library import load_library
 from codegen.maps.bilinear import lookup
+from conformance.unit.support.tolerances import tolerance
+from conformance.unit.support.waterloo import SATIN, WATERLOO, cosine_weighted, viewer
 
-WATERLOO = Path(__file__).parents[3] / "shared" / "data" / "waterloo"
-EXACT = 1e-9
-"""Float64 interpolation of what bilinear interpolation represents exactly."""
-HALF_VECTOR_RMS, STRAND_RMS, STRAND_RMS_WITH_COSINES = 0.01, 0.13, 0.02
-"""Promised: half-vector lobes fit to 1 %, a strand's lobe only to about 11 %, with r(t.l, t.v) to 2 %."""
-SATIN = {0.0: 0.277, 90.0: 0.310}
-"""Azimuth of a viewer 40 degrees off the normal -> mean of satin over cosine-weighted light, as published."""
-SATIN_ROUNDING = 0.002
-"""The published means are of random samples, and the azimuth of the images is only known to a texel."""
+EXACT = tolerance("exact_interpolation")
 
 
 def smooth_factors(channels: int = 1) -> Factors:
@@ -68,7 +62,7 @@ def test_what_is_a_product_of_factors_is_found_again() -> None:
     l, v = directions(5_000, seed=5)
     fresh = Samples(l, v, truth.value(l, v))
     # What is left: the pull of the smoothness, and logarithms that are interpolated in place of values.
-    assert error(found, fresh).p95 <= HALF_VECTOR_RMS
+    assert error(found, fresh).p95 <= tolerance("half_vector_fit")
     assert np.abs(found.value(l, v) - found.value(v, l)).max() <= EXACT
 
 
@@ -80,7 +74,7 @@ def test_missing_samples_are_left_out() -> None:
     holes[::3] = np.nan
     holes[1::3] = 0.0
     found = factorise(Samples(l, v, holes), Settings(8, 8))
-    assert error(found, Samples(l, v, value)).p95 <= HALF_VECTOR_RMS
+    assert error(found, Samples(l, v, value)).p95 <= tolerance("half_vector_fit")
 
 
 def test_lobes_of_the_half_vector_fit_and_a_strand_needs_its_cosines() -> None:
@@ -92,10 +86,10 @@ def test_lobes_of_the_half_vector_fit_and_a_strand_needs_its_cosines() -> None:
         fresh = draw_samples(library, name, constants, 10_000, diffuse=0.3, seed=2)
         return error(factorise(drawn, settings), fresh).rms
 
-    assert rms("strand_specular_half", Settings(24, 48), 20_000) <= HALF_VECTOR_RMS
+    assert rms("strand_specular_half", Settings(24, 48), 20_000) <= tolerance("half_vector_fit")
     alone = rms("strand_specular", Settings(16, 32), 20_000)
-    assert HALF_VECTOR_RMS < alone <= STRAND_RMS
-    assert rms("strand_specular", Settings(8, 16, 64), 20_000) <= STRAND_RMS_WITH_COSINES
+    assert tolerance("half_vector_fit") < alone <= tolerance("strand_fit")
+    assert rms("strand_specular", Settings(8, 16, 64), 20_000) <= tolerance("strand_fit_with_cosines")
 
 
 @pytest.mark.parametrize(
@@ -156,7 +150,7 @@ def test_a_material_survives_the_repository_format_up_to_eight_bits(tmp_path: Pa
         (tmp_path / name).write_bytes(data)
     found = read_waterloo(tmp_path)
     assert (found.name, found.zeros) == ("smooth", 0)
-    assert np.abs(found.factors.p - truth.p).max() <= 0.5 / 255.0 + EXACT
+    assert np.abs(found.factors.p - truth.p).max() <= tolerance("eight_bits")
     assert np.abs(found.factors.scale - truth.scale).max() <= EXACT
     with pytest.raises(UserError, match="leave out the factor r"):
         waterloo_files("x", "x", Factors(truth.scale, truth.p, truth.q, truth.q))
@@ -181,16 +175,11 @@ def test_what_is_no_material_gets_one_sentence(tmp_path: Path) -> None:
 @pytest.mark.skipif(not WATERLOO.is_dir(), reason="the Waterloo data are not carried; see CREDITS.md")
 def test_the_published_satin_is_symmetric_and_as_anisotropic_as_measured() -> None:
     satin = read_waterloo(WATERLOO / "satin").factors
-    x, y = np.meshgrid(*[(np.arange(256) + 0.5) / 256] * 2)
-    radius, phi = np.sqrt(x.ravel()), 2.0 * np.pi * y.ravel()
-    l = np.stack([radius * np.cos(phi), radius * np.sin(phi), np.sqrt(1.0 - x.ravel())], axis=-1)
-    polar = np.radians(40.0)
+    l = cosine_weighted(256)
     for azimuth, expected in SATIN.items():
-        a = np.radians(azimuth)
-        v = np.array([np.sin(polar) * np.cos(a), np.sin(polar) * np.sin(a), np.cos(polar)])
-        viewer = np.broadcast_to(v, l.shape)
-        assert np.abs(satin.value(l, viewer) - satin.value(viewer, l)).max() <= EXACT
-        assert abs(satin.value(l, viewer).mean() - expected) <= SATIN_ROUNDING
+        v = np.broadcast_to(viewer(azimuth), l.shape)
+        assert np.abs(satin.value(l, v) - satin.value(v, l)).max() <= EXACT
+        assert abs(satin.value(l, v).mean() - expected) <= tolerance("satin_mean")
     assert read_waterloo(WATERLOO / "garnetred" / "garnetred64.txt").zeros > 0
 
 
@@ -203,8 +192,8 @@ def test_the_command_writes_images_scale_and_error(tmp_path: Path) -> None:
     manifest = json.loads((tmp_path / "out" / "factors.json").read_text())
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["factors.json", "p.exr", "q.exr"]
     # A constant reflectance is a product of constants.
-    assert abs(manifest["scale"][0] * np.pi - 1.0) <= HALF_VECTOR_RMS
-    assert manifest["error"]["largest"] <= HALF_VECTOR_RMS / 100.0
+    assert abs(manifest["scale"][0] * np.pi - 1.0) <= tolerance("half_vector_fit")
+    assert manifest["error"]["largest"] <= tolerance("constant_fit")
 
 
 @pytest.mark.parametrize(

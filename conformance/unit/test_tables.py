@@ -16,12 +16,7 @@ from codegen.maps.image import read_pixels
 from codegen.tables.arguments import two_arguments
 from codegen.tables.axes import Axis
 from codegen.tables.tabulate import made, tabulate
-
-EXACT = 1e-12
-"""Float64 warps there and back."""
-BANKS_256 = 5e-5
-"""Promised of a table of 256 x 256 texels of the strand cosine on angle-warped axes."""
-FLOAT32 = 2.0**-23
+from conformance.unit.support.tolerances import tolerance
 
 
 @pytest.mark.parametrize("warp", ["linear", "angle", "root", "log"])
@@ -29,7 +24,7 @@ def test_warps_are_undone(warp: str) -> None:
     axis = Axis("x", 0.25, 1.0, warp)
     values = np.linspace(0.25, 1.0, 33)
     assert warp in axis.warps()
-    assert np.abs(axis.value(axis.coordinate(values)) - values).max() <= EXACT
+    assert np.abs(axis.value(axis.coordinate(values)) - values).max() <= tolerance("warps")
     assert axis.coordinate(np.array([0.25, 1.0, 0.0, 7.0])).tolist() == [0.0, 1.0, 0.0, 1.0]
 
 
@@ -43,7 +38,7 @@ def test_a_bilinear_function_needs_the_smallest_table() -> None:
     x, y = Axis("x", -1.0, 1.0), Axis("y", 0.0, 2.0)
     table = tabulate(x, y, lambda a, b: 1.0 + a - 2.0 * b + a * b, 1e-6)
     assert table.values.shape == (8, 8) and (table.x.warp, table.y.warp) == ("linear", "linear")
-    assert table.error <= 8.0 * FLOAT32
+    assert table.error <= tolerance("stored_table") * 2.0
 
 
 def test_a_square_root_at_the_end_picks_the_warp_that_straightens_it() -> None:
@@ -68,9 +63,9 @@ def test_the_error_is_the_largest_that_other_points_find() -> None:
 def test_the_banks_cosine_on_warped_axes() -> None:
     x, y, function = two_arguments(load_library(), "strand_cosine", {})
     warped = made(replace(x, warp="angle"), replace(y, warp="angle"), function, 256, 256)
-    assert warped.error <= BANKS_256
+    assert warped.error <= tolerance("banks_table")
     # A square root at either end: linear axes cannot follow it.
-    assert made(x, y, function, 256, 256).error > 100.0 * BANKS_256
+    assert made(x, y, function, 256, 256).error > 100.0 * tolerance("banks_table")
 
 
 def test_the_command_writes_a_table_that_its_description_explains(tmp_path: Path) -> None:
@@ -84,7 +79,7 @@ def test_the_command_writes_a_table_that_its_description_explains(tmp_path: Path
     axes = [Axis(**manifest[name]) for name in ("x", "y")]
     q, p = (axis.value(np.linspace(0.0, 1.0, n)) for axis, n in zip(axes, pixels.T.shape, strict=True))
     expected = (1.0 - q[None, :]) ** p[:, None]
-    assert np.abs(pixels - expected).max() <= 4.0 * FLOAT32
+    assert np.abs(pixels - expected).max() <= tolerance("stored_table")
 
 
 @pytest.mark.parametrize(
