@@ -6,7 +6,6 @@ and on drivers of textures/filtering.toml within the declared error of the float
 the library, with its reference. More than one map in a function; sizes of maps.
 """
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -19,15 +18,14 @@ from codegen.execute import execute
 from codegen.intervals import DEFAULT_TABLES, permitted
 from codegen.kernels import KernelOptions
 from codegen.library import load_library
-from conformance import textures
 from conformance.reference import reference_for
+from conformance.textures.filtering import declared
 from conformance.textures.maps import SIZES, chain, full_chain, places
 from conformance.unit.support.sources import library_of
 from targets import TimedRuntime
 
 SEED = 20260803
 COUNT = 200
-FILTERING = tomllib.loads((Path(textures.__path__[0]) / "filtering.toml").read_text("utf-8"))["driver"]
 PROBE = """
 def probe(t: Annotated[Texture, Edges("{u}", "{v}")], uv: P, lod: X) -> vec4:
     \"\"\"A lookup.\"\"\"
@@ -45,14 +43,8 @@ def sizes(a: Annotated[Texture, Edges("{u}", "{v}")], b: Annotated[Texture, Edge
 """
 
 
-def declared(runtime: TimedRuntime) -> float | None:
-    """The declared error of the driver; None where none is."""
-    told = f"{runtime.device.driver} {runtime.device.device}"
-    return next((float(row["bound"]) for row in FILTERING if row["driver"] in told), None)
-
-
 def judge(got: Any, exact: Any, largest: float, runtime: TimedRuntime) -> None:
-    bound = declared(runtime)
+    bound = declared(runtime.device)
     assert np.isfinite(got).all()
     assert bound is None or np.abs(got - exact).max() <= bound * largest
 
@@ -103,7 +95,7 @@ def test_environment(runtime: TimedRuntime) -> None:
     got = execute(load_library(), "environment_latlong", {"environment": levels, "w": w, "lod": lod}, runtime)
     exact = reference_for("environment_latlong")(levels, w.astype(np.float64), lod.astype(np.float64))
     (bound,) = load_library().bounds["environment_latlong"]
-    assert declared(runtime) is None or np.abs(got - exact).max() <= bound.bound
+    assert declared(runtime.device) is None or np.abs(got - exact).max() <= bound.bound
 
 
 def test_maps_need_a_plain_kernel(runtime: TimedRuntime, tmp_path: Path) -> None:

@@ -1,0 +1,1 @@
+"""Reflectances as products of textures, and functions of two angles as tables."""
