@@ -5,14 +5,16 @@ Exit status: 0 good, 1 a check failed, 2 bad usage or input. Errors are one sent
 
 from __future__ import annotations
 
+import ast
 import importlib
 import os
 import sys
+from pathlib import Path
 
 import click
 
 from codegen.errors import UserError, nearest
-from codegen.library import VERSION
+from codegen.version import VERSION
 
 COMMANDS = {
     "list": "codegen.commands.list:command",
@@ -30,8 +32,17 @@ COMMANDS = {
 """Subcommand -> where it lives; what runs on devices lives in conformance and is loaded by name."""
 
 
+def documentation(name: str) -> str:
+    """What a subcommand says of itself; its file is read, not imported."""
+    module, attribute = COMMANDS[name].split(":")
+    path = Path(__file__).parents[1].joinpath(*module.split(".")).with_suffix(".py")
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    found = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == attribute]
+    return ast.get_docstring(found[0]) or ""
+
+
 class LazyGroup(click.Group):
-    """A group that imports a subcommand only when it is asked for, so that emission starts quickly."""
+    """A group that imports a subcommand only when it runs, so that emission and help start quickly."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -42,6 +53,13 @@ class LazyGroup(click.Group):
         module, attribute = COMMANDS[cmd_name].split(":")
         found: click.Command = getattr(importlib.import_module(module), attribute)
         return found
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        room = formatter.width - 6 - max(map(len, COMMANDS))
+        shown = {name: click.Command(name, help=documentation(name)) for name in COMMANDS}
+        rows = [(name, command.get_short_help_str(room)) for name, command in shown.items()]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

@@ -43,10 +43,10 @@ def describe(library: Library, f: Function) -> list[str]:
     for key, text in f.doc.entries.items():
         if key not in names:
             lines.append(f"  {key.ljust(width)}  {text}")
-    for bound in library.bounds.get(f.name, ()):
+    for bound in library.bounds_of(f.name):
         lines.append(f"  {'error'.ljust(width)}  {bound.describe()} [{bound.origin}]")
     for table, found in _guaranteed(library, f).items():
-        text = phrase(table, found, library.bounds.get(f.name, ()))
+        text = phrase(table, found, library.bounds_of(f.name))
         lines.append(f"  {'guaranteed'.ljust(width)}  {text}")
     form = half_forms(library).get(f.name)
     if form is not None:
@@ -97,7 +97,7 @@ def as_data(library: Library, f: Function) -> dict[str, Any]:
                 "domain": b.domain,
                 "origin": b.origin,
             }
-            for b in library.bounds.get(f.name, ())
+            for b in library.bounds_of(f.name)
         ],
         "guaranteed": {t: found.as_data() for t, found in _guaranteed(library, f).items()},
         "half": forms[f.name].as_data() if f.name in (forms := half_forms(library)) else None,

@@ -43,7 +43,7 @@ def _pairs(library: Library, found: Mapping[str, Surveyed], name: str) -> list[t
     if name not in found:
         return []
     errors = found[name].tables["wgsl"].errors
-    return [(b, e) for b, e in zip(library.bounds.get(name, ()), errors, strict=False) if e is not None]
+    return [(b, e) for b, e in zip(library.bounds_of(name), errors, strict=False) if e is not None]
 
 
 def _limit(bound: Bound) -> float:
@@ -71,7 +71,7 @@ def _table(library: Library, found: Mapping[str, Surveyed], section: str) -> lis
         if f.module != section or name not in found:
             continue
         tables = found[name].tables
-        bounds = library.bounds.get(name, [])
+        bounds = library.bounds_of(name)
         shares = {table: _share(tables[table]) for table in SHOWN}
         for k, bound in enumerate(bounds):
             cells = [f"{_error(bound, tables[t], k)}{shares[t] if k == 0 else ''}" for t in SHOWN]

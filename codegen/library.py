@@ -18,8 +18,6 @@ from codegen.ir.types import Array, Struct, Type
 SECTIONS = ("numeric", "direction", "strand", "fakefur", "shells", "sampling", "lobes", "maps", "environment")
 """Order of the sections in listings and emitted files; unknown sections follow alphabetically."""
 
-VERSION = "0.1.0"
-
 
 def default_root() -> Path:
     """The folder of the installed package shaderlib, found without importing it."""
@@ -59,6 +57,7 @@ class Library:
         self.resolver = Resolver(root, extra)
         self._added: dict[str, Function] = {}
         self._base: Library | None = None
+        self._bounds_below: dict[Path, dict[str, list[Bound]]] = {}
 
     def with_functions(self, functions: Iterable[Function]) -> Library:
         """This library and further functions that no source holds, made by passes for instance.
@@ -70,6 +69,7 @@ class Library:
         extended.root, extended.extra, extended.resolver = self.root, self.extra, self.resolver
         extended._added = {**self._added, **{f.name: f for f in functions}}
         extended._base = self._base or self
+        extended._bounds_below = self._bounds_below
         return extended
 
     @functools.cached_property
@@ -118,19 +118,39 @@ class Library:
         """Declared error bounds by function name, from shaderlib/<section>/bounds.toml."""
         if self._base is not None:
             return self._base.bounds
-        bounds: dict[str, list[Bound]] = {}
-        beside = [path for folder in self.extra if (path := folder / "bounds.toml").is_file()]
-        for path in [*sorted(self.root.glob("*/bounds.toml")), *beside]:
-            inside = path.is_relative_to(self.root)
-            shown = f"{'shaderlib/' if inside else ''}{path.parent.name}/{path.name}"
-            try:
-                data = tomllib.loads(path.read_text(encoding="utf-8"))
-            except tomllib.TOMLDecodeError as e:
-                raise UserError(f"{shown}: not valid TOML: {e}") from None
-            for name, entries in read_bounds(shown, data).items():
-                if not self.resolver.module_of(name):
-                    raise unknown(f"function in {shown}", name, self.resolver.function_names())
-                bounds.setdefault(name, []).extend(entries)
+        folders = [*sorted(path.parent for path in self.root.glob("*/bounds.toml")), *self.extra]
+        return {name: found for folder in folders for name, found in self._read_bounds(folder).items()}
+
+    def bounds_of(self, name: str) -> list[Bound]:
+        """The declared error bounds of one function; reads no file but the one of its section."""
+        folder = self._section_folder(name)
+        return [] if folder is None else self._read_bounds(folder).get(name, [])
+
+    def _section_folder(self, name: str) -> Path | None:
+        """The folder of the section that defines a function; None for an unknown name."""
+        path = self.resolver.path_of(name)
+        if path is None:
+            return None
+        beside = next((folder for folder in self.extra if path.is_relative_to(folder)), None)
+        return beside or self.root / path.relative_to(self.root).parts[0]
+
+    def _read_bounds(self, folder: Path) -> dict[str, list[Bound]]:
+        """The bounds that a section declares; raises UserError for a file that is wrong."""
+        if folder in self._bounds_below:
+            return self._bounds_below[folder]
+        path = folder / "bounds.toml"
+        shown = f"{'shaderlib/' if path.is_relative_to(self.root) else ''}{folder.name}/{path.name}"
+        try:
+            data = tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        except tomllib.TOMLDecodeError as e:
+            raise UserError(f"{shown}: not valid TOML: {e}") from None
+        bounds = read_bounds(shown, data)
+        for name in bounds:
+            if not self.resolver.module_of(name):
+                raise unknown(f"function in {shown}", name, self.resolver.function_names())
+            if self._section_folder(name) != folder:
+                raise UserError(f'{shown}: "{name}" is a function of another section')
+        self._bounds_below[folder] = bounds
         return bounds
 
     def select(self, names: Iterable[str] | None = None) -> Selection:
@@ -176,7 +196,7 @@ class Library:
         for module in sorted(files):
             digest.update(f"{module}\n{files[module].text}\n".encode())
         for name in sorted(names):
-            digest.update("".join(f"{bound}\n" for bound in self.bounds.get(name, ())).encode())
+            digest.update("".join(f"{bound}\n" for bound in self.bounds_of(name)).encode())
         for function in sorted(added, key=lambda f: f.name):
             digest.update(f"{function.name} {function.parameters} {function.body}\n".encode())
         return digest.hexdigest()[:16]

@@ -15,8 +15,9 @@ from codegen.factors.samples import read_samples
 from codegen.factors.source import draw_samples
 from codegen.factors.waterloo import read_waterloo, waterloo_files
 from codegen.files import write_folder
-from codegen.library import VERSION, load_library
+from codegen.library import load_library
 from codegen.maps.image import exr
+from codegen.version import VERSION
 
 FRESH = 40_000
 """Samples of a function that judge the fit and took no part in it."""

@@ -7,7 +7,8 @@ import json
 import click
 
 from codegen.describe import as_data, signature
-from codegen.library import VERSION, load_library
+from codegen.library import load_library
+from codegen.version import VERSION
 
 
 @click.command("list")
@@ -39,5 +40,5 @@ def command(as_json: bool) -> None:
             f.kind, ""
         )
         click.echo(f"  {signature(f)}{note}")
-        for bound in library.bounds.get(f.name, ()):
+        for bound in library.bounds_of(f.name):
             click.echo(f"      error {bound.describe()}")

@@ -11,10 +11,11 @@ from rich.console import Console
 from codegen.commands.factor import numbers
 from codegen.errors import UserError
 from codegen.files import write_folder
-from codegen.library import VERSION, load_library
+from codegen.library import load_library
 from codegen.maps.image import exr
 from codegen.tables.arguments import two_arguments
 from codegen.tables.tabulate import LARGEST, Table, tabulate
+from codegen.version import VERSION
 
 
 @click.command("table")

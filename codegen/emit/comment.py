@@ -10,18 +10,14 @@ from codegen.emit import wrap
 from codegen.ir import nodes as ir
 from codegen.ir.types import Field
 
+_WORD = re.compile(r"(?<![\w.])\w+")
 _TAIL = ("returns", "degenerate", "error", "guaranteed", "form", "source")
 
 
 def renamer(names: Iterable[str], prefix: str) -> Callable[[str], str]:
     """A function that puts the prefix before library names in running text (names of several words only)."""
-    compound = sorted(
-        (n for n in names if "_" in n or (n[:1].isupper() and n != n.upper())), key=len, reverse=True
-    )
-    if not compound:
-        return lambda text: text
-    pattern = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, compound))})(?!\w)")
-    return lambda text: pattern.sub(rf"{prefix}\1", text)
+    compound = {n for n in names if "_" in n or (n[:1].isupper() and n != n.upper())}
+    return lambda text: _WORD.sub(lambda m: prefix + m[0] if m[0] in compound else m[0], text)
 
 
 def function_comment(

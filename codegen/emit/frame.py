@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from codegen.emit import wrap
 from codegen.emit.dialect import Dialect
-from codegen.library import VERSION
+from codegen.version import VERSION
 
 DIRECTIONS = (
     "Directions are unit vectors that point away from the shaded point: l to the light, v to the viewer; t "

@@ -92,7 +92,7 @@ def emit_selection(library: Library, dialect: Dialect, selection: Selection, pre
 def bounds_of(library: Library, version: Version) -> Sequence[Bound]:
     """What the comment states of a function's error."""
     if not version.is_half:
-        return library.bounds.get(version.source.name, ())
+        return library.bounds_of(version.source.name)
     form = half_forms(library).get(version.source.name)
     return () if form is None else form.bounds
 
@@ -102,7 +102,7 @@ def guaranteed_of(library: Library, version: Version, dialect: Dialect) -> str:
     found = guarantees(library).get(version.source.name)
     if found is None or version.is_half:
         return ""
-    table, bounds = table_of(dialect), library.bounds.get(version.source.name, ())
+    table, bounds = table_of(dialect), library.bounds_of(version.source.name)
     return phrase(table, found.tables[table], bounds, dialect.target) if table in found.tables else ""
 
 

@@ -127,6 +127,11 @@ class Resolver:
         """The module that defines a function or struct; empty for an unknown name."""
         return self._defined.get(name, "")
 
+    def path_of(self, name: str) -> Path | None:
+        """The file that defines a function or struct; None for an unknown name."""
+        module = self.module_of(name)
+        return self._paths[module][0] if module else None
+
     @property
     def names(self) -> list[str]:
         """Every function and struct of the sources."""

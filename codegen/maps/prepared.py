@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.errors import UserError, unknown
-from codegen.library import VERSION
 from codegen.maps import latlong, mipmap, octahedral, paraboloid, prefilter
 from codegen.maps.image import Pixels, exr
 from codegen.maps.radiance import read_radiance
+from codegen.version import VERSION
 
 Array = npt.NDArray[np.float64]
 SCHEMA = 1

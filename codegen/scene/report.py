@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from codegen.library import VERSION
 from codegen.passes.values import Step
 from codegen.scene.build import Outcome, TargetResult
 from codegen.scene.document import HALF_STEP
 from codegen.scene.errors import MARGIN, Measured
 from codegen.scene.proof import Proof
 from codegen.scene.settings import Alias, Constant, Range
+from codegen.version import VERSION
 
 SCHEMA = 1
 GIVEN = "substitute"

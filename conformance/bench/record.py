@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from codegen.ir.nodes import Function
-from codegen.library import VERSION, Library
+from codegen.library import Library
 from codegen.passes.operations import operations_by_cost
+from codegen.version import VERSION
 from conformance.bench.accuracy import Error
 from conformance.bench.kernels import THROUGHPUT
 from conformance.bench.ratios import Spread

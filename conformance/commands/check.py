@@ -14,7 +14,8 @@ from rich.progress import Progress
 from codegen.backends import TARGETS
 from codegen.errors import UserError, unknown
 from codegen.files import write_bytes, write_text
-from codegen.library import VERSION, Library, load_library
+from codegen.library import Library, load_library
+from codegen.version import VERSION
 from conformance.check.ahead import prepared_ahead
 from conformance.check.backend import Backend, backend
 from conformance.check.engine import check_function

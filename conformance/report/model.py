@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from codegen.errors import UserError
-from codegen.library import VERSION, Library
+from codegen.library import Library
+from codegen.version import VERSION
 from conformance.bench.record import SCHEMA as RESULT_SCHEMA
 from conformance.bench.record import machine_data
 from conformance.report.pareto import Point, front

@@ -65,7 +65,7 @@ def is_current(library: Library, row: found.Row) -> bool:
     name = row["function"]
     if name not in library.public:
         return False
-    domains = {f"{b.field}: {b.domain}" if b.field else b.domain for b in library.bounds.get(name, ())}
+    domains = {f"{b.field}: {b.domain}" if b.field else b.domain for b in library.bounds_of(name)}
     try:
         inputs = found.inputs_of(library.function(name), [row["inputs"]])
     except ValueError:

@@ -16,11 +16,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from click import Command, Context
 
 from codegen.backends import TARGETS, dialect
-from codegen.cli import COMMANDS, run
+from codegen.cli import COMMANDS, documentation, run, vair
 from codegen.emit.module import emit
-from codegen.library import VERSION, load_library
+from codegen.library import load_library
+from codegen.version import VERSION
 from targets import doctor
 from targets.drivers import present
 
@@ -103,6 +105,24 @@ def test_help(command: str | None, capsys: Capture) -> None:
     out = answer(capsys, *filter(None, [command]), "--help")
     assert out.startswith("Usage: vair")
     assert "--help" in out
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_reads_what_the_command_says_of_itself(name: str) -> None:
+    command = vair.get_command(Context(vair), name)
+    assert command is not None
+    shown = Command(name, help=documentation(name)).get_short_help_str()
+    assert shown == command.get_short_help_str()
+
+
+def test_help_imports_no_command() -> None:
+    """Nor the generator: help is read more often than anything else."""
+    code = (
+        "import sys; from codegen.cli import run; run(['--help']); "
+        "late = 'codegen.commands', 'codegen.ir', 'conformance'; "
+        "assert not [m for m in sys.modules if m.startswith(late)]"
+    )
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True)
 
 
 def test_version(capsys: Capture) -> None:

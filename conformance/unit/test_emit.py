@@ -25,8 +25,9 @@ from codegen.emit.dialect import Dialect
 from codegen.emit.module import DEFAULT_PREFIX, emit
 from codegen.errors import UserError
 from codegen.generate import include_name
-from codegen.library import VERSION, Library, load_library
+from codegen.library import Library, load_library
 from codegen.names import reserved
+from codegen.version import VERSION
 from conformance.unit.support.dialects import DIALECTS, ONE_PER_TARGET, dialect_id, validate
 from conformance.unit.support.neutral import find, parse, text_of
 from conformance.unit.support.sources import library_of, write_library
