@@ -2,13 +2,17 @@
 
     y = x + 3.0;  z = y + 3.0;  return 0.001 - z      becomes      -x + (0.001 - 3.0 - 3.0)
 
+    y = 1.5 * f;  return y - g - f                    becomes      (y - f) - g, or f * (1.5 - 1.0) - g
+
 The function is first made one of single assignments, with loops unrolled and calls inlined; vectors are taken
-apart. Each sum and each product of several operations is then one chain, whose constants stand first or last.
+apart. Each sum and each product of several operations is then one chain, whose constants stand first or last
+(`chained`); or a short sum is taken in any order (`reordered`), its multiples of one value gathered into one
+first (`gathered`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -23,6 +27,8 @@ UNROLLED = 16
 """Turns of a loop that compilers write out."""
 LONGEST = 64
 """Terms of a chain that is looked at."""
+MOST_ORDERED = 5
+"""Terms of a sum that is taken in any order: n terms have about 3^n partial sums."""
 (SCALAR_PATH,) = RELATIONS
 
 Known = Mapping[str, ir.Expr]
@@ -36,6 +42,15 @@ class _Chain:
     others: list[tuple[bool, ir.Expr]]
 
 
+@dataclass
+class _Multiple:
+    """A term of a sum with its sign, and its factors, whose signs hold that of the term."""
+
+    negative: bool
+    term: ir.Expr
+    factors: _Chain
+
+
 def straightened(library: Library, name: str) -> Specialised:
     """The function under its own name, with single assignments, loops unrolled and calls inlined."""
     return specialise(library, name, kinds=(), new_name=name, unroll=UNROLLED)
@@ -43,13 +58,29 @@ def straightened(library: Library, name: str) -> Specialised:
 
 def chained(function: ir.Function, library: Library, constants_first: bool) -> ir.Function:
     """A straightened function with its chains' constants together, before or behind the other terms."""
+    return _changed(function, library, partial(_together, constants_first))
+
+
+def reordered(function: ir.Function, library: Library) -> ir.Function:
+    """A straightened function with short sums in any order, written as `dot` where a table says so of it."""
+    return _changed(function, library, _reordered)
+
+
+def gathered(function: ir.Function, library: Library) -> ir.Function:
+    """The same with multiples of one value in a sum gathered: a x + b x becomes x (a + b)."""
+    return _changed(function, library, _gathered)
+
+
+def _changed(
+    function: ir.Function, library: Library, change: Callable[[Known, ir.Expr], ir.Expr]
+) -> ir.Function:
     apart = SCALAR_PATH.apply(function, library, Choice(0))
     body = (apart.function if apart else function).body
     known = {s.name: s.value for s in ir.statements(body) if isinstance(s, ir.Let) and not s.mutable}
-    return replace(function, body=ir.map_body(body, partial(_together, known, constants_first)))
+    return replace(function, body=ir.map_body(body, partial(change, known)))
 
 
-def _together(known: Known, constants_first: bool, e: ir.Expr) -> ir.Expr:
+def _together(constants_first: bool, known: Known, e: ir.Expr) -> ir.Expr:
     if e.type != F32 or not isinstance(e, ir.Binary) or e.op not in ("+", "-", "*"):
         return e
     chain = _Chain([], [])
@@ -65,6 +96,64 @@ def _together(known: Known, constants_first: bool, e: ir.Expr) -> ir.Expr:
     return ir.Binary(F32, "+" if is_sum else "*", rest, folded)
 
 
+def _reordered(known: Known, e: ir.Expr) -> ir.Expr:
+    if e.type != F32 or not isinstance(e, ir.Binary) or e.op not in ("+", "-"):
+        return e
+    chain = _Chain([], [])
+    _collect(known, e, False, True, chain)
+    return _in_any_order([*chain.others, *chain.constants], e)
+
+
+def _in_any_order(terms: list[tuple[bool, ir.Expr]], otherwise: ir.Expr) -> ir.Expr:
+    """The terms' inner product with ones, whose promise is a sum in any order; for few terms."""
+    if not 3 <= len(terms) <= MOST_ORDERED:
+        return otherwise
+    signed = tuple(ir.Unary(F32, "negate", e) if negative else e for negative, e in terms)
+    type_ = Vector(f"vec{len(terms)}", F32, len(terms))
+    ones = ir.Construct(type_, tuple(ir.Const(F32, 1.0) for _ in terms))
+    return ir.Builtin(F32, "dot", (ir.Construct(type_, signed), ones))
+
+
+def _gathered(known: Known, e: ir.Expr) -> ir.Expr:
+    if e.type != F32 or not isinstance(e, ir.Binary) or e.op not in ("+", "-"):
+        return e
+    chain = _Chain([], [])
+    _collect(known, e, False, True, chain)
+    if len(chain.others) > LONGEST:
+        return e
+    multiples: dict[tuple[str, ...], list[_Multiple]] = {}
+    for negative, term in chain.others:
+        factors = _Chain([], [])
+        _collect(known, term, negative, False, factors)
+        base = tuple(sorted(repr(_meaning(known, factor)) for _, factor in factors.others))
+        multiples.setdefault(base, []).append(_Multiple(negative, term, factors))
+    if all(len(of_one) == 1 for of_one in multiples.values()):
+        return _in_any_order([*chain.others, *chain.constants], e)
+    terms = [*map(_multiple, multiples.values()), *chain.constants]
+    return _in_any_order(terms, _joined(terms, True))
+
+
+def _multiple(of_one: list[_Multiple]) -> tuple[bool, ir.Expr]:
+    """One multiple of a value, with its sign, from several."""
+    if len(of_one) == 1:
+        return of_one[0].negative, of_one[0].term
+    base = _joined([(False, factor) for _, factor in of_one[0].factors.others], False)
+    parts = []
+    for multiple in of_one:
+        signs = [negative for negative, _ in (*multiple.factors.constants, *multiple.factors.others)]
+        constants = [(False, c) for _, c in multiple.factors.constants]
+        parts.append((sum(signs) % 2 == 1, _joined(constants or [(False, ir.Const(F32, 1.0))], False)))
+    return False, ir.Binary(F32, "*", base, _joined(parts, True))
+
+
+def _meaning(known: Known, e: ir.Expr) -> ir.Expr:
+    """What an expression stands for, through locals and components: equal meanings are one value."""
+    seen = _looked_through(known, e)
+    while isinstance(seen, ir.Var) and isinstance(known.get(seen.name), ir.Var):
+        seen = known[seen.name]
+    return seen
+
+
 def _collect(known: Known, e: ir.Expr, negative: bool, is_sum: bool, chain: _Chain) -> None:
     """Add the terms of an expression to the chain, looking through locals and components."""
     seen = _looked_through(known, e)
@@ -77,7 +166,7 @@ def _collect(known: Known, e: ir.Expr, negative: bool, is_sum: bool, chain: _Cha
             _collect(known, seen.right, False, is_sum, chain)
         case ir.Unary(op="negate"):
             _collect(known, seen.operand, not negative, is_sum, chain)
-        case ir.Const():
+        case _ if _is_constant(seen):
             chain.constants.append((negative, seen))
         case _:
             chain.others.append((negative, e))
@@ -88,18 +177,35 @@ def _looked_through(known: Known, e: ir.Expr) -> ir.Expr:
     match e:
         case ir.Var() if e.name in known:
             found = _looked_through(known, known[e.name])
-        case ir.Swizzle(components=("x" | "y" | "z" | "w") as axis):
-            value = e.value
-            while isinstance(value, ir.Var) and value.name in known:
-                value = known[value.name]
+        case ir.Swizzle() if len(e.components) == 1:
+            value, k = _component(known, e.value, "xyzw".index(e.components))
             if not isinstance(value, ir.Construct) or any(isinstance(a.type, Vector) for a in value.args):
                 return e
-            part = value.args["xyzw".index(axis) if len(value.args) > 1 else 0]
-            found = _looked_through(known, part)
+            found = _looked_through(known, value.args[k if len(value.args) > 1 else 0])
         case _:
             return e
     is_negated = isinstance(found, ir.Unary) and found.op == "negate"
     return found if is_negated or isinstance(found, ir.Binary | ir.Const) else e
+
+
+def _component(known: Known, e: ir.Expr, k: int) -> tuple[ir.Expr, int]:
+    """What a vector's component is a component of, through locals and swizzles, and its number there."""
+    while True:
+        if isinstance(e, ir.Var) and e.name in known:
+            e = known[e.name]
+        elif isinstance(e, ir.Swizzle):
+            k = "xyzw".index(e.components[k])
+            e = e.value
+        else:
+            return e, k
+
+
+def _is_constant(e: ir.Expr) -> bool:
+    """A constant, or an operation on constants alone."""
+    operands = tuple(ir.children(e))
+    return isinstance(e, ir.Const) or (
+        isinstance(e, ir.Binary | ir.Unary) and all(map(_is_constant, operands))
+    )
 
 
 def _joined(terms: list[tuple[bool, ir.Expr]], is_sum: bool) -> ir.Expr:

@@ -1,10 +1,11 @@
 """Sums and products with their constant moved inwards, as compilers do it.
 
 Mesa 22.3.6 turns (a + b) + c with a constant c into (a + c) + b, and the same for products; it does so across
-locals and the turns of a loop (conformance.programs.chains), and factors interpolations for some drivers
-(conformance.programs.interpolated). WGSL, Vulkan and GLSL without `precise` allow
-rearrangement; the accuracy tables judge expressions as written. A result that only this explains is counted
-as rearranged, and is no failure.
+locals and the turns of a loop, reorders sums, gathers multiples of one value (conformance.programs.chains),
+and factors interpolations for some drivers (conformance.programs.interpolated). WGSL (Reassociation and
+Fusion: any reordering whose answer is the same if computed exactly), Vulkan (distributivity included) and
+GLSL without `precise` allow rearrangement; the accuracy tables judge expressions as written. A result that
+only this explains is counted as rearranged, and is no failure.
 """
 
 from __future__ import annotations
@@ -16,15 +17,18 @@ from typing import Any
 import numpy as np
 
 from codegen.evaluate.arrays import Array, Value
-from codegen.intervals import DEFAULT_TABLES, Permitted, permitted
+from codegen.intervals import DEFAULT_TABLES, Permitted, Table, load_table, permitted
+from codegen.intervals.accuracy import Inherited
 from codegen.ir import nodes as ir
 from codegen.ir.types import Vector
 from codegen.library import Library
-from conformance.programs.chains import chained, straightened
+from conformance.programs.chains import chained, gathered, reordered, straightened
 from conformance.programs.interpolated import interpolated
 
 REARRANGING = frozenset({"glsl", "glsl_es", "vulkan", "wgsl", "opencl_relaxed"})
 """Accuracy tables of specifications that allow it."""
+ANY_ORDER = Inherited("sum of products, in any order")
+"""What a table says of `dot` where sums in any order can be written as one."""
 _CHAINS = {"+": ("+", "-"), "-": ("+", "-"), "*": ("*",)}
 
 
@@ -39,22 +43,26 @@ def explained(
     if chosen not in REARRANGING:
         return np.zeros(1, np.bool_)
     found = _components_inside(permitted(library, name, inputs, chosen), value)
-    for extended, arguments in _forms(library, name, inputs):
+    for extended, arguments in _forms(library, name, inputs, load_table(chosen)):
         if found.all():
             break
         found |= _components_inside(permitted(extended, name, arguments, chosen), value)
     return np.asarray(found.all(axis=1))
 
 
-def _forms(library: Library, name: str, inputs: Mapping[str, Any]) -> Iterator[tuple[Library, Any]]:
+def _forms(
+    library: Library, name: str, inputs: Mapping[str, Any], table: Table
+) -> Iterator[tuple[Library, Any]]:
     """Every rearranged form of a function with its arguments, the ones that cost least first."""
     selected = library.select([name]).functions
     for change in (_moved(_inwards), _moved(_outwards), interpolated):
         yield library.with_functions(map(change, selected)), inputs
     straight = straightened(library, name)
     arguments = straight.arguments(inputs) if straight.parameters else {}
-    for constants_first in (False, True):
-        made = chained(straight.function, library, constants_first)
+    forms = [chained(straight.function, library, first) for first in (False, True)]
+    if table.row("dot").accuracy == ANY_ORDER:
+        forms += [form(straight.function, library) for form in (reordered, gathered)]
+    for made in forms:
         yield library.with_functions([made]), arguments
 
 

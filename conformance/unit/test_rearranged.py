@@ -16,7 +16,7 @@ from codegen.ir import nodes as ir
 from conformance.fuzz.case import draw_inputs, make_case
 from conformance.fuzz.source import write
 from conformance.metamorphic.pairs import columns
-from conformance.programs.chains import chained, straightened
+from conformance.programs.chains import chained, gathered, straightened
 from conformance.programs.interpolated import interpolated
 from conformance.programs.rearranged import explained
 from conformance.unit.support.sources import library_of
@@ -88,6 +88,41 @@ def test_components_are_rearranged_each_for_itself(tmp_path: Path) -> None:
     assert explained(library, "probe", {"u": u}, "opencl", got, "opencl_relaxed").all()
     got[0, 0] += np.float32(1e-6)
     assert not explained(library, "probe", {"u": u}, "opencl", got, "opencl_relaxed").any()
+
+
+REORDERED = """def probe(f: X) -> vec3:
+    rest = vec2(f, f) * (vec2(f, 0.0) - vec2(1.5))
+    return rest.xxy - rest.xxx - vec3(f, f, f)
+"""
+
+
+def test_a_sum_in_another_order_is_explained(tmp_path: Path) -> None:
+    """Random program 13 of seed 4 on Mesa: the terms stand behind swizzles of a vector."""
+    library = library_of(tmp_path, REORDERED)
+    f = np.array([0xBFF8B24E], np.uint32).view(np.float32)
+    three_halves = np.float32(1.5)
+    last = (f * -three_halves - f) - f * (f - three_halves)
+    got = np.stack([-f, -f, last], axis=-1)
+    assert not permitted(library, "probe", {"f": f}, "wgsl").contains(got).any()
+    for table in ("wgsl", "glsl", "vulkan"):
+        assert explained(library, "probe", {"f": f}, "", got, table).all(), table
+    assert not explained(library, "probe", {"f": f}, "", got, "opencl").any()
+    got[:, 2] -= 16.0 * np.spacing(np.abs(last))
+    assert not explained(library, "probe", {"f": f}, "", got, "wgsl").any()
+
+
+def test_multiples_of_one_value_are_gathered(tmp_path: Path) -> None:
+    """3.3 x - y - 3.3 x, in which the multiples of x become one."""
+    source = "def probe(x: X, y: X) -> f32:\n    a = x * 1.1\n    return a * 3.0 - y - x * 3.3\n"
+    library = library_of(tmp_path, source)
+    straight = straightened(library, "probe").function
+    made = gathered(straight, library)
+    inputs = {"x": np.array([1.7], np.float32), "y": np.array([0.3], np.float32)}
+    once = [e for e in ir.expressions(made.body) if isinstance(e, ir.Var) and e.name == "x"]
+    assert len(once) == 1
+    wanted = evaluate(library, "probe", inputs, "float64")
+    got = evaluate(library.with_functions([made]), "probe", inputs, "float64")
+    assert all(np.abs(a - b).max() <= SAME for a, b in zip(columns(wanted), columns(got), strict=True))
 
 
 def test_constant_moved_outwards_is_explained(tmp_path: Path) -> None:
