@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from codegen.costs import costs
+from codegen.emit.parameter import described
 from codegen.guarantees import Guarantee, guarantees, phrase
 from codegen.half import HalfForm, half_forms
 from codegen.ir.domains import Domain
@@ -36,9 +37,7 @@ def describe(library: Library, f: Function) -> list[str]:
     lines = [signature(f), f"  {f.module}{kind}; {f.place.path}:{f.place.line}", "", f"  {f.doc.summary}", ""]
     width = max((len(key) for key in [*f.doc.entries, "guaranteed"]), default=5)
     for p in f.parameters:
-        text = f.doc.entries.get(p.name, "")
-        domain = domain_text(p.domain)
-        lines.append(f"  {p.name.ljust(width)}  {'; '.join(filter(None, (text, domain)))}")
+        lines.append(f"  {p.name.ljust(width)}  {described(f.doc.entries.get(p.name, ''), p.domain)}")
     names = {p.name for p in f.parameters}
     for key, text in f.doc.entries.items():
         if key not in names:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 
 from codegen.bounds import Bound
 from codegen.emit import wrap
+from codegen.emit.parameter import described
 from codegen.ir import nodes as ir
 from codegen.ir.types import Field
 
@@ -29,8 +30,7 @@ def function_comment(
     """
     entries = dict(f.doc.entries)
     for p in f.parameters:
-        described = p.domain.describe() if p.domain is not None else ""
-        entries[p.name] = _join(entries.get(p.name, ""), described)
+        entries[p.name] = described(entries.get(p.name, ""), p.domain)
     errors = [b.describe() for b in bounds if not b.targets or target in b.targets]
     if errors:
         entries["error"] = "; ".join(errors)
@@ -46,15 +46,9 @@ def struct_comment(s: ir.StructDef, rename: Callable[[str], str]) -> list[str]:
     """The comment lines of one struct."""
 
     def entry(f: Field) -> str:
-        return _join(s.doc.entries.get(f.name, ""), f.domain.describe() if f.domain is not None else "")
+        return described(s.doc.entries.get(f.name, ""), f.domain)
 
     return _comment(rename(s.doc.summary), {f.name: rename(entry(f)) for f in s.type.fields})
-
-
-def _join(text: str, described: str) -> str:
-    if not text or not described or described in text:
-        return text or described
-    return f"{text}; {described}"
 
 
 def _comment(summary: str, entries: dict[str, str]) -> list[str]:

@@ -23,8 +23,10 @@ import pytest
 from codegen.backends import TARGETS, dialect
 from codegen.emit.dialect import Dialect
 from codegen.emit.module import DEFAULT_PREFIX, emit
+from codegen.emit.parameter import described
 from codegen.errors import UserError
 from codegen.generate import include_name
+from codegen.ir.domains import Domain, Finite, Interval, Length, Unit
 from codegen.library import Library, load_library
 from codegen.names import reserved
 from codegen.version import VERSION
@@ -163,6 +165,30 @@ def test_every_function_documents_its_parameters_result_and_source(dialect: Dial
         wanted = [p.name for p in f.parameters] + ["returns"] + (["source"] if f.public else [])
         missing += [f"{f.name}: {entry}" for entry in wanted if not re.search(rf"//   {entry}\s+\S", comment)]
     assert not missing
+
+
+@pytest.mark.parametrize(
+    ("text", "domain", "shown"),
+    [
+        (
+            "sharpness, in [0, 1e5]; best from 16 on",
+            Interval(0.0, 1e5),
+            "sharpness, in [0, 1e5]; best from 16 on",
+        ),
+        ("sharpness, in [0, 1e5]", Interval(8.0, 1e5), "sharpness, in [0, 1e5]; in [8, 100000]"),
+        ("numbers in [0, 1)", Interval(0.0, 1.0 - 2.0**-24), "numbers in [0, 1)"),
+        ("numbers in [0, 1)", Interval(0.0, 1.0), "numbers in [0, 1); in [0, 1]"),
+        ("vector, of length 1e-6 to 1e6", Length(1e-6, 1e6), "vector, of length 1e-6 to 1e6"),
+        ("share, 0 to 100", Interval(0.0, 10.0), "share, 0 to 100; in [0, 10]"),
+        ("beyond [-1e39, 0)", Interval(0.0, 1.0), "beyond [-1e39, 0); in [0, 1]"),
+        ("a unit vector", Unit(), "a unit vector"),
+        ("direction", Unit(), "direction; unit vector"),
+        ("", Finite(), "finite"),
+        ("anything", None, "anything"),
+    ],
+)
+def test_domains_are_not_said_twice(text: str, domain: Domain | None, shown: str) -> None:
+    assert described(text, domain) == shown
 
 
 @one_per_target

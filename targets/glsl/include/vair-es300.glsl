@@ -257,7 +257,7 @@ highp float vair_atanh_series(highp float z_squared) {
 }
 
 // Natural logarithm of 1 - q, accurate as q -> 0.
-//   q           in [0, 1); the largest float32 below 1 gives -16.64; in [0, 0.99999994]
+//   q           in [0, 1); the largest float32 below 1 gives -16.64
 //   returns     log(1 - q), at most 0, with flat relative error
 //   error       relative <= 7.5e-7 (floor 1e-30): q from 1e-30 to 1 - 2^-24
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 6.9e-7 relative
@@ -275,7 +275,7 @@ highp float vair_log_one_minus(highp float q) {
 
 // Natural logarithm of 1 - q as written: a small absolute error, no relative accuracy as q -> 0.
 // Variant of vair_log_one_minus.
-//   q           in [0, 1); in [0, 0.99999994]
+//   q           in [0, 1)
 //   returns     log(1 - q)
 //   error       absolute <= 6e-7: q <= 0.5; absolute <= 6e-6: q up to 1 - 2^-24, where the
 //               logarithm is -16.6
@@ -399,7 +399,7 @@ highp float vair_one_minus_exp_neg_rational_coarse(highp float x) {
 
 // Power (1 - q)^p, accurate as q -> 0 and for exponents up to 1e5.
 //   q           defect 1 - x of the base x, in [0, 2]; computed directly, not as 1 - x
-//   p           exponent, in [0, 1e5]; in [0, 100000]
+//   p           exponent, in [0, 1e5]
 //   returns     max(0, 1 - q)^p, in [0, 1] up to rounding; not below e^-80 = 1.8e-35 for q < 1
 //   degenerate  p = 0: 1, whatever q is; otherwise q >= 1: 0
 //   error       absolute <= 6e-7: exponent 0 to 1e5
@@ -416,7 +416,7 @@ highp float vair_pow_one_minus(highp float q, highp float p) {
 
 // Power (1 - q)^p for exponents from 4 on, without a logarithm. Variant of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
-//   p           exponent, in [4, 1e5]; in [4, 100000]
+//   p           exponent, in [4, 1e5]
 //   returns     max(0, 1 - q)^p to 6e-5 at p = 4, 1e-5 at 16, 4e-7 from 100 on; at most 2.5e-6 for
 //               q >= 1
 //   error       absolute <= 6e-5: exponent from 4; absolute <= 1e-5: exponent from 16; absolute <=
@@ -437,7 +437,7 @@ highp float vair_pow_one_minus_from4(highp float q, highp float p) {
 // Power (1 - q)^p by its first term: a third of a percent off at p = 8 and exact for large p.
 // Variant of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
-//   p           exponent, in [8, 1e5]; in [8, 100000]
+//   p           exponent, in [8, 1e5]
 //   returns     max(0, 1 - q)^p to 0.112 / p^2; at most 1.2e-7 for q >= 1
 //   error       absolute <= 0.0018: exponent from 8; absolute <= 0.00045: exponent from 16;
 //               absolute <= 1.3e-5: exponent from 100
@@ -454,7 +454,7 @@ highp float vair_pow_one_minus_gauss(highp float q, highp float p) {
 // Power (1 - q)^p by four squarings and one division, without a transcendental function. Variant of
 // vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
-//   p           exponent, in [8, 1e5]; exact for p = 16; in [8, 100000]
+//   p           exponent, in [8, 1e5]; exact for p = 16
 //   returns     max(0, 1 - q)^p to 4.4e-4 from p = 16 on (a quarter of half an 8-bit step), 1.3e-3
 //               at p = 8; 0 for q >= 1 and p >= 16
 //   error       absolute <= 0.00135: exponent from 8; absolute <= 0.00045: exponent from 16
@@ -476,7 +476,7 @@ highp float vair_pow_one_minus_sq16(highp float q, highp float p) {
 // Power (1 - q)^p for exponents from 8 on, by one exponential and without a division. Variant of
 // vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
-//   p           exponent, in [8, 1e5]; in [8, 100000]
+//   p           exponent, in [8, 1e5]
 //   returns     max(0, 1 - q)^p to 2.7e-4, a seventh of half an 8-bit step; at most 1e-7 for q >= 1
 //   error       absolute <= 0.00028: exponent from 8
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.00027 absolute
@@ -491,7 +491,7 @@ highp float vair_pow_one_minus_from8(highp float q, highp float p) {
 // Power (1 - q)^p by three squarings of a cubic: no transcendental function, no division. Variant
 // of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
-//   p           exponent, in [8, 1e5]; in [8, 100000]
+//   p           exponent, in [8, 1e5]
 //   returns     max(0, 1 - q)^p to 1.8e-4, an eleventh of half an 8-bit step, also for q >= 1
 //   error       absolute <= 0.00018: exponent from 8
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.00018 absolute
@@ -529,7 +529,7 @@ highp vec3 vair_safe_normalize(highp vec3 x, highp vec3 fallback) {
 
 // Unit vector along x for ordinary lengths, and a chosen direction for the zero vector. Variant of
 // vair_safe_normalize.
-//   x           vector to normalise, of length 1e-15 to 1e18, or zero; length in [1e-15, 1e18]
+//   x           vector to normalise, of length 1e-15 to 1e18, or zero
 //   fallback    unit vector to return for the zero vector
 //   returns     x / |x|
 //   degenerate  x = 0, and |x| below 3e-19: fallback
@@ -546,7 +546,7 @@ highp vec3 vair_safe_normalize_dot(highp vec3 x, highp vec3 fallback) {
 
 // Unit vector along x for ordinary lengths, where x is known not to be zero. Variant of
 // vair_safe_normalize.
-//   x           vector to normalise, of length 1e-15 to 1e18; length in [1e-15, 1e18]
+//   x           vector to normalise, of length 1e-15 to 1e18
 //   fallback    not used: what computes it can be left out; unit vector
 //   returns     x / |x|
 //   degenerate  x = 0: the zero vector
@@ -1007,7 +1007,7 @@ vair_StrandAngles vair_strand_angles(highp vec3 t, highp vec3 l, highp vec3 v) {
 //   v           direction to the viewer; unit vector
 //   k_diffuse   diffuse colour, linear RGB; in [0, 1]
 //   k_specular  specular colour, linear RGB; in [0, 1]
-//   exponent    sharpness of the highlight, in [0, 1e5]; in [0, 100000]
+//   exponent    sharpness of the highlight, in [0, 1e5]
 //   returns     k_diffuse vair_strand_diffuse + k_specular vair_strand_specular; multiply by the
 //               colour of the light
 //   error       absolute <= 6e-6: exponent 1 to 1000; per channel; absolute <= 1.7e-5: exponent 1
@@ -1030,7 +1030,7 @@ highp vec3 vair_kajiya_kay_shade(highp vec3 t, highp vec3 l, highp vec3 v, highp
 //   v           direction to the viewer; unit vector
 //   k_diffuse   diffuse colour, linear RGB; in [0, 1]
 //   k_specular  specular colour, linear RGB; in [0, 1]
-//   exponent    sharpness of the highlight, in [0, 1e5]; in [0, 100000]
+//   exponent    sharpness of the highlight, in [0, 1e5]
 //   returns     vair_inherited_shadow (k_diffuse vair_strand_diffuse + k_specular
 //               vair_strand_specular); multiply by the colour of the light
 //   degenerate  light below the surface (n.l <= 0): 0
@@ -1087,7 +1087,7 @@ vair_StrandAngles vair_strand_angles_half(highp vec3 t, highp vec3 l, highp vec3
 //   v           direction to the viewer; unit vector
 //   k_diffuse   diffuse colour, linear RGB; in [0, 1]
 //   k_specular  specular colour, linear RGB; in [0, 1]
-//   exponent    sharpness of the highlight, in [4, 1e5]; in [4, 100000]
+//   exponent    sharpness of the highlight, in [4, 1e5]
 //   returns     k_diffuse vair_strand_diffuse + k_specular vair_strand_specular; multiply by the
 //               colour of the light
 //   error       absolute <= 7e-5: exponent from 4; per channel
@@ -1109,7 +1109,7 @@ highp vec3 vair_kajiya_kay_shade_from4(highp vec3 t, highp vec3 l, highp vec3 v,
 //   v           direction to the viewer; unit vector
 //   k_diffuse   diffuse colour, linear RGB; in [0, 1]
 //   k_specular  specular colour, linear RGB; in [0, 1]
-//   exponent    sharpness of the highlight, in [4, 1e5]; in [4, 100000]
+//   exponent    sharpness of the highlight, in [4, 1e5]
 //   returns     vair_inherited_shadow (k_diffuse vair_strand_diffuse + k_specular
 //               vair_strand_specular); multiply by the colour of the light
 //   degenerate  light below the surface (n.l <= 0): 0
@@ -1130,7 +1130,7 @@ highp vec3 vair_banks_shade_from4(highp vec3 t, highp vec3 n, highp vec3 l, high
 //   v           direction to the viewer; unit vector
 //   k_diffuse   diffuse colour, linear RGB; in [0, 1]
 //   k_specular  specular colour, linear RGB; in [0, 1]
-//   exponent    sharpness of the highlight, in [8, 1e5]; in [8, 100000]
+//   exponent    sharpness of the highlight, in [8, 1e5]
 //   returns     k_diffuse vair_strand_diffuse + k_specular vair_strand_specular; multiply by the
 //               colour of the light
 //   error       absolute <= 0.00032: exponent from 8; per channel
@@ -1152,7 +1152,7 @@ highp vec3 vair_kajiya_kay_shade_from8(highp vec3 t, highp vec3 l, highp vec3 v,
 //   v           direction to the viewer; unit vector
 //   k_diffuse   diffuse colour, linear RGB; in [0, 1]
 //   k_specular  specular colour, linear RGB; in [0, 1]
-//   exponent    sharpness of the highlight, in [8, 1e5]; in [8, 100000]
+//   exponent    sharpness of the highlight, in [8, 1e5]
 //   returns     vair_inherited_shadow (k_diffuse vair_strand_diffuse + k_specular
 //               vair_strand_specular); multiply by the colour of the light
 //   degenerate  light below the surface (n.l <= 0): 0
@@ -1173,7 +1173,7 @@ highp vec3 vair_banks_shade_from8(highp vec3 t, highp vec3 n, highp vec3 l, high
 //   v           direction to the viewer; unit vector
 //   k_diffuse   diffuse colour, linear RGB; in [0, 1]
 //   k_specular  specular colour, linear RGB; in [0, 1]
-//   exponent    sharpness of the highlight, in [8, 1e5]; in [8, 100000]
+//   exponent    sharpness of the highlight, in [8, 1e5]
 //   returns     k_diffuse vair_strand_diffuse + k_specular vair_strand_specular; multiply by the
 //               colour of the light
 //   error       absolute <= 0.00024: exponent from 8; per channel
@@ -1195,7 +1195,7 @@ highp vec3 vair_kajiya_kay_shade_cubic8(highp vec3 t, highp vec3 l, highp vec3 v
 //   v           direction to the viewer; unit vector
 //   k_diffuse   diffuse colour, linear RGB; in [0, 1]
 //   k_specular  specular colour, linear RGB; in [0, 1]
-//   exponent    sharpness of the highlight, in [8, 1e5]; in [8, 100000]
+//   exponent    sharpness of the highlight, in [8, 1e5]
 //   returns     vair_inherited_shadow (k_diffuse vair_strand_diffuse + k_specular
 //               vair_strand_specular); multiply by the colour of the light
 //   degenerate  light below the surface (n.l <= 0): 0
@@ -1213,7 +1213,7 @@ highp vec3 vair_banks_shade_cubic8(highp vec3 t, highp vec3 n, highp vec3 l, hig
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
 //   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, in the frame (T, n x T,
-//                n) with T = normalize(t - (t.n) n); in [-1, 1]
+//                n) with T = normalize(t - (t.n) n)
 //   returns      the texel's direction in the surface, a unit vector orthogonal to n
 //   degenerate   texel without x and y: T; t along n: as vair_frame_from_tangent
 //   error        absolute <= 1.2e-6: t from 1e-7 rad off the line of n; per component
@@ -1235,12 +1235,12 @@ highp vec3 vair_tangent_from_map(highp vec3 n, highp vec3 t, highp vec3 map_tang
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
 //   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, in the frame (T, n x T,
-//                n) with T = normalize(t - (t.n) n); in [-1, 1]
+//                n) with T = normalize(t - (t.n) n)
 //   l            direction to the light; unit vector
 //   v            direction to the viewer; unit vector
 //   k_diffuse    diffuse colour, linear RGB; in [0, 1]
 //   k_specular   specular colour, linear RGB; in [0, 1]
-//   exponent     sharpness of the highlight, in [0, 1e5]; in [0, 100000]
+//   exponent     sharpness of the highlight, in [0, 1e5]
 //   returns      vair_banks_shade with the tangent of vair_tangent_from_map; multiply by the colour
 //                of the light
 //   degenerate   light below the surface (n.l <= 0): 0; texel without x and y: brushed along t
@@ -1262,13 +1262,12 @@ highp vec3 vair_brushed_shade(highp vec3 n, highp vec3 t, highp vec3 map_tangent
 // vair_brushed_shade.
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
-//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as vair_brushed_shade;
-//                in [-1, 1]
+//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as vair_brushed_shade
 //   l            direction to the light; unit vector
 //   v            direction to the viewer; unit vector
 //   k_diffuse    diffuse colour, linear RGB; in [0, 1]
 //   k_specular   specular colour, linear RGB; in [0, 1]
-//   exponent     sharpness of the highlight, in [4, 1e5]; in [4, 100000]
+//   exponent     sharpness of the highlight, in [4, 1e5]
 //   returns      vair_banks_shade with the tangent of vair_tangent_from_map; multiply by the colour
 //                of the light
 //   degenerate   light below the surface (n.l <= 0): 0; texel without x and y: brushed along t
@@ -1286,13 +1285,12 @@ highp vec3 vair_brushed_shade_from4(highp vec3 n, highp vec3 t, highp vec3 map_t
 // vair_brushed_shade.
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
-//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as vair_brushed_shade;
-//                in [-1, 1]
+//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as vair_brushed_shade
 //   l            direction to the light; unit vector
 //   v            direction to the viewer; unit vector
 //   k_diffuse    diffuse colour, linear RGB; in [0, 1]
 //   k_specular   specular colour, linear RGB; in [0, 1]
-//   exponent     sharpness of the highlight, in [8, 1e5]; in [8, 100000]
+//   exponent     sharpness of the highlight, in [8, 1e5]
 //   returns      vair_banks_shade with the tangent of vair_tangent_from_map; multiply by the colour
 //                of the light
 //   degenerate   light below the surface (n.l <= 0): 0; texel without x and y: brushed along t
@@ -1310,13 +1308,12 @@ highp vec3 vair_brushed_shade_from8(highp vec3 n, highp vec3 t, highp vec3 map_t
 // vair_brushed_shade.
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
-//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as vair_brushed_shade;
-//                in [-1, 1]
+//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as vair_brushed_shade
 //   l            direction to the light; unit vector
 //   v            direction to the viewer; unit vector
 //   k_diffuse    diffuse colour, linear RGB; in [0, 1]
 //   k_specular   specular colour, linear RGB; in [0, 1]
-//   exponent     sharpness of the highlight, in [8, 1e5]; in [8, 100000]
+//   exponent     sharpness of the highlight, in [8, 1e5]
 //   returns      vair_banks_shade with the tangent of vair_tangent_from_map; multiply by the colour
 //                of the light
 //   degenerate   light below the surface (n.l <= 0): 0; texel without x and y: brushed along t
@@ -1519,8 +1516,7 @@ highp vec3 vair_tangent_shift(highp vec3 t, highp vec3 n, highp float shift) {
 //   t           strand tangent, root to tip; unit vector
 //   h           vair_half_vector of light and viewer; unit vector
 //   exponent    sharpness of the highlight, in [0, 1e5]; not that of vair_strand_specular: about a
-//               quarter of its width around the cone where light and viewer are on one side; in [0,
-//               100000]
+//               quarter of its width around the cone where light and viewer are on one side
 //   returns     1 where t.h = 0, falling to 0 along the strand
 //   degenerate  exponent 0: 1 everywhere
 //   error       absolute <= 1e-6: exponent 0; absolute <= 1e-5: exponent 0 to 2, h from 0.1 rad off
@@ -1541,7 +1537,7 @@ highp float vair_strand_specular_half(highp vec3 t, highp vec3 h, highp float ex
 //   t         strand tangent, root to tip; unit vector
 //   n         surface normal; unit vector
 //   h         vair_half_vector of light and viewer; unit vector
-//   exponent  sharpness of the highlight, in [0, 1e5]; in [0, 100000]
+//   exponent  sharpness of the highlight, in [0, 1e5]
 //   shift     displacement of the tangent along n; in [-2, 2]
 //   returns   vair_strand_specular_half of the shifted tangent, faded out where h points back along
 //             the strand
@@ -1561,11 +1557,11 @@ highp float vair_scheuermann_highlight(highp vec3 t, highp vec3 n, highp vec3 h,
 //   v                   direction to the viewer; unit vector
 //   base                hair colour, linear RGB; multiplies everything; in [0, 1]
 //   primary             colour of the first highlight, linear RGB; in [0, 1]
-//   primary_exponent    its sharpness, in [0, 1e5]; in [0, 100000]
+//   primary_exponent    its sharpness, in [0, 1e5]
 //   primary_shift       its displacement; positive moves it toward the tip, as Scheuermann's first
 //                       highlight; in [-2, 2]
 //   secondary           colour of the second highlight, linear RGB; in [0, 1]
-//   secondary_exponent  its sharpness, in [0, 1e5]; in [0, 100000]
+//   secondary_exponent  its sharpness, in [0, 1e5]
 //   secondary_shift     its displacement; negative moves it toward the root, as Scheuermann's
 //                       second one; in [-2, 2]
 //   mask                noise in [0, 1] that breaks up the second highlight
@@ -1608,8 +1604,7 @@ highp float vair_scheuermann_fade(highp vec3 t, highp vec3 h) {
 // vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
 //   h           vair_half_vector of light and viewer; unit vector
-//   exponent    sharpness of the highlight, in [8, 1e5]: half of it is the power, from 4 on; in [8,
-//               100000]
+//   exponent    sharpness of the highlight, in [8, 1e5]: half of it is the power, from 4 on
 //   returns     1 where t.h = 0, falling to 0 along the strand
 //   error       absolute <= 6.5e-5: exponent from 8; absolute <= 1.5e-5: exponent 32 to 1e4
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 5.9e-5, 9.6e-6 absolute in
@@ -1629,10 +1624,10 @@ highp float vair_strand_specular_half_from4(highp vec3 t, highp vec3 h, highp fl
 //   v                   direction to the viewer; unit vector
 //   base                hair colour, linear RGB; multiplies everything; in [0, 1]
 //   primary             colour of the first highlight, linear RGB; in [0, 1]
-//   primary_exponent    its sharpness, in [8, 1e5]; in [8, 100000]
+//   primary_exponent    its sharpness, in [8, 1e5]
 //   primary_shift       its displacement; positive moves it toward the tip; in [-2, 2]
 //   secondary           colour of the second highlight, linear RGB; in [0, 1]
-//   secondary_exponent  its sharpness, in [8, 1e5]; in [8, 100000]
+//   secondary_exponent  its sharpness, in [8, 1e5]
 //   secondary_shift     its displacement; negative moves it toward the root; in [-2, 2]
 //   mask                noise in [0, 1] that breaks up the second highlight
 //   returns             base (d + primary s1 + mask secondary s2), as vair_scheuermann_shade
@@ -1662,8 +1657,7 @@ highp vec3 vair_scheuermann_shade_from4(highp vec3 t, highp vec3 n, highp vec3 l
 // Variant of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
 //   h           vair_half_vector of light and viewer; unit vector
-//   exponent    sharpness of the highlight, in [16, 1e5]: half of it is the power, from 8 on; in
-//               [16, 100000]
+//   exponent    sharpness of the highlight, in [16, 1e5]: half of it is the power, from 8 on
 //   returns     1 where t.h = 0, falling to 0 along the strand
 //   error       absolute <= 0.00032: exponent from 16
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.00027 absolute
@@ -1682,10 +1676,10 @@ highp float vair_strand_specular_half_from8(highp vec3 t, highp vec3 h, highp fl
 //   v                   direction to the viewer; unit vector
 //   base                hair colour, linear RGB; multiplies everything; in [0, 1]
 //   primary             colour of the first highlight, linear RGB; in [0, 1]
-//   primary_exponent    its sharpness, in [16, 1e5]; in [16, 100000]
+//   primary_exponent    its sharpness, in [16, 1e5]
 //   primary_shift       its displacement; positive moves it toward the tip; in [-2, 2]
 //   secondary           colour of the second highlight, linear RGB; in [0, 1]
-//   secondary_exponent  its sharpness, in [16, 1e5]; in [16, 100000]
+//   secondary_exponent  its sharpness, in [16, 1e5]
 //   secondary_shift     its displacement; negative moves it toward the root; in [-2, 2]
 //   mask                noise in [0, 1] that breaks up the second highlight
 //   returns             base (d + primary s1 + mask secondary s2), as vair_scheuermann_shade
@@ -1715,8 +1709,7 @@ highp vec3 vair_scheuermann_shade_from8(highp vec3 t, highp vec3 n, highp vec3 l
 // division. Variant of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
 //   h           vair_half_vector of light and viewer; unit vector
-//   exponent    sharpness of the highlight, in [16, 1e5]: half of it is the power, from 8 on; in
-//               [16, 100000]
+//   exponent    sharpness of the highlight, in [16, 1e5]: half of it is the power, from 8 on
 //   returns     1 where t.h = 0, falling to 0 along the strand
 //   error       absolute <= 0.00022: exponent from 16
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.00018 absolute
@@ -1735,10 +1728,10 @@ highp float vair_strand_specular_half_cubic8(highp vec3 t, highp vec3 h, highp f
 //   v                   direction to the viewer; unit vector
 //   base                hair colour, linear RGB; multiplies everything; in [0, 1]
 //   primary             colour of the first highlight, linear RGB; in [0, 1]
-//   primary_exponent    its sharpness, in [16, 1e5]; in [16, 100000]
+//   primary_exponent    its sharpness, in [16, 1e5]
 //   primary_shift       its displacement; positive moves it toward the tip; in [-2, 2]
 //   secondary           colour of the second highlight, linear RGB; in [0, 1]
-//   secondary_exponent  its sharpness, in [16, 1e5]; in [16, 100000]
+//   secondary_exponent  its sharpness, in [16, 1e5]
 //   secondary_shift     its displacement; negative moves it toward the root; in [-2, 2]
 //   mask                noise in [0, 1] that breaks up the second highlight
 //   returns             base (d + primary s1 + mask secondary s2), as vair_scheuermann_shade
@@ -2034,7 +2027,7 @@ highp float vair_strand_diffuse_cosine(highp vec3 t, highp vec3 l) {
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
-//   exponent    sharpness of the highlight, in [0, 1e5]; in [0, 100000]
+//   exponent    sharpness of the highlight, in [0, 1e5]
 //   returns     1 on the cone t.v = -t.l, falling to 0; multiply by the specular colour
 //   degenerate  exponent 0: 1 everywhere, also on the dark side, where any other exponent gives 0
 //   error       absolute <= 1e-6: exponent 0; absolute <= 0.002: exponent 0.5 to 1, where the lobe
@@ -2056,7 +2049,7 @@ highp float vair_strand_specular(highp vec3 t, highp vec3 l, highp vec3 v, highp
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
-//   exponent    sharpness of the highlight, in [4, 1e5]; in [4, 100000]
+//   exponent    sharpness of the highlight, in [4, 1e5]
 //   returns     1 on the cone t.v = -t.l, falling to 0; at most 2.5e-6 on the dark side
 //   error       absolute <= 6.5e-5: exponent 4 to 1e4; absolute <= 1.5e-5: exponent 16 to 1000;
 //               absolute <= 7e-5: exponent 4 to 1e5
@@ -2074,7 +2067,7 @@ highp float vair_strand_specular_from4(highp vec3 t, highp vec3 l, highp vec3 v,
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
-//   exponent    sharpness of the highlight, in [8, 1e5]; in [8, 100000]
+//   exponent    sharpness of the highlight, in [8, 1e5]
 //   returns     1 on the cone t.v = -t.l, falling to 0; at most 2e-7 on the dark side
 //   error       absolute <= 0.0018: exponent from 8; absolute <= 0.00046: exponent from 16
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.0018, 0.00044 absolute in
@@ -2091,7 +2084,7 @@ highp float vair_strand_specular_gauss(highp vec3 t, highp vec3 l, highp vec3 v,
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
-//   exponent    sharpness of the highlight, in [8, 1e5]; best from 16 on; in [8, 100000]
+//   exponent    sharpness of the highlight, in [8, 1e5]; best from 16 on
 //   returns     1 on the cone t.v = -t.l, falling to 0
 //   error       absolute <= 0.0014: exponent from 8; absolute <= 0.0005: exponent from 16
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.0014, 0.00047 absolute in
@@ -2109,7 +2102,7 @@ highp float vair_strand_specular_sq16(highp vec3 t, highp vec3 l, highp vec3 v,
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
-//   exponent    sharpness of the highlight, in [8, 1e5]; in [8, 100000]
+//   exponent    sharpness of the highlight, in [8, 1e5]
 //   returns     1 on the cone t.v = -t.l, falling to 0; at most 2e-7 on the dark side
 //   error       absolute <= 0.00032: exponent from 8
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.00028 absolute
@@ -2125,7 +2118,7 @@ highp float vair_strand_specular_from8(highp vec3 t, highp vec3 l, highp vec3 v,
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
-//   exponent    sharpness of the highlight, in [8, 1e5]; in [8, 100000]
+//   exponent    sharpness of the highlight, in [8, 1e5]
 //   returns     1 on the cone t.v = -t.l, falling to 0
 //   error       absolute <= 0.00022: exponent from 8
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.00038 absolute
@@ -2142,7 +2135,7 @@ highp float vair_strand_specular_cubic8(highp vec3 t, highp vec3 l, highp vec3 v
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
-//   exponent    sharpness of the highlight, in [0, 1e5]; in [0, 100000]
+//   exponent    sharpness of the highlight, in [0, 1e5]
 //   returns     1 on the cone t.v = -t.l, falling to 0
 //   degenerate  exponent 0: 1 everywhere
 //   error       absolute <= 0.008: exponent 1 to 100; absolute <= 0.03: exponent 1 to 1000;
@@ -2161,8 +2154,7 @@ highp float vair_strand_specular_direct(highp vec3 t, highp vec3 l, highp vec3 v
 // vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
 //   h           vair_half_vector of light and viewer; unit vector
-//   exponent    sharpness of the highlight, in [16, 1e5]: half of it is the power, from 8 on; in
-//               [16, 100000]
+//   exponent    sharpness of the highlight, in [16, 1e5]: half of it is the power, from 8 on
 //   returns     1 where t.h = 0, falling to 0 along the strand
 //   error       absolute <= 0.0018: exponent from 16; absolute <= 0.00046: exponent from 32
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.0018, 0.00044 absolute in
@@ -2178,8 +2170,7 @@ highp float vair_strand_specular_half_gauss(highp vec3 t, highp vec3 h, highp fl
 // of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
 //   h           vair_half_vector of light and viewer; unit vector
-//   exponent    sharpness of the highlight, in [16, 1e5]: half of it is the power; best from 32 on;
-//               in [16, 100000]
+//   exponent    sharpness of the highlight, in [16, 1e5]: half of it is the power; best from 32 on
 //   returns     1 where t.h = 0, falling to 0 along the strand
 //   error       absolute <= 0.0014: exponent from 16; absolute <= 0.0005: exponent from 32
 //   guaranteed  100 % of the domain by the OpenGL ES specification, to 0.0014, 0.00045 absolute in
@@ -2196,8 +2187,7 @@ highp float vair_strand_specular_half_sq16(highp vec3 t, highp vec3 h, highp flo
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; from 1e-3 rad off the
 //                line of n; unit vector
-//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as
-//                vair_tangent_from_map; in [-1, 1]
+//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as vair_tangent_from_map
 //   returns      the texel's direction in the surface, a unit vector orthogonal to n
 //   degenerate   texel without x and y: T; t along n: the zero vector or a rounded direction
 //   error        absolute <= 1e-5: t from 0.1 rad off the line of n; per component; absolute <=
@@ -2219,8 +2209,7 @@ highp vec3 vair_tangent_from_map_apart(highp vec3 n, highp vec3 t, highp vec3 ma
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; orthogonal to n; unit
 //                vector
-//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as
-//                vair_tangent_from_map; in [-1, 1]
+//   map_tangent  texel of a tangent map, decoded to [-1, 1] per component, as vair_tangent_from_map
 //   returns      the texel's direction in the surface, a unit vector orthogonal to n
 //   degenerate   texel without x and y: t; t not orthogonal to n: off by n.t
 //   error        absolute <= 0.0012: n.t up to 1e-3; per component; absolute <= 0.11: n.t up to
@@ -3208,8 +3197,7 @@ highp vec3 vair_fin_normal(highp vec3 edge, highp vec3 n) {
 }
 
 // Normal of the fin that stands on an edge of ordinary length. Variant of vair_fin_normal.
-//   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6; length in [1e-6,
-//               1000000]
+//   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6
 //   n           surface normal; unit vector
 //   returns     unit vector along edge x n
 //   degenerate  edge = 0: a unit vector perpendicular to n; edge parallel to n: any unit vector
@@ -3224,8 +3212,7 @@ highp vec3 vair_fin_normal_dot(highp vec3 edge, highp vec3 n) {
 }
 
 // Normal of the fin that stands on an edge well off the surface normal. Variant of vair_fin_normal.
-//   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6; length in [1e-6,
-//               1000000]
+//   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6
 //   n           surface normal; unit vector
 //   returns     unit vector along edge x n
 //   degenerate  edge = 0 or parallel to n: the zero vector or a rounded direction
@@ -3316,7 +3303,7 @@ highp vec3 vair_fin_position(highp vec3 position, highp vec3 n, highp float w,
 
 // Opacity of a number of equal layers, or of a share of one.
 //   alpha       opacity of one layer, in [0, 1]
-//   layers      number of layers, in [1e-4, 1e5]; in [0.0001, 100000]
+//   layers      number of layers, in [1e-4, 1e5]
 //   returns     1 - (1 - alpha)^layers, in [0, 1]
 //   degenerate  alpha = 0: 0; alpha = 1: 1
 //   form        vair_one_minus_exp_neg of an optical depth: relative accuracy for thin layers,
@@ -3344,7 +3331,7 @@ highp float vair_shell_alpha_resample(highp float alpha, highp float authored, h
 
 // Opacity of a number of equal layers, to a small absolute error.
 //   alpha       opacity of one layer, in [0, 1]
-//   layers      number of layers, in [1e-4, 1e5]; in [0.0001, 100000]
+//   layers      number of layers, in [1e-4, 1e5]
 //   returns     1 - (1 - alpha)^layers, in [0, 1] up to rounding
 //   degenerate  alpha = 0: 0 up to rounding; alpha = 1: 1
 //   form        as written, the power by log and exp
@@ -3372,7 +3359,7 @@ highp float vair_shell_alpha_resample_direct(highp float alpha, highp float auth
 
 // Opacity of a number of equal layers that are at most half opaque, to 0.1 percent.
 //   alpha       opacity of one layer, in [0, 0.5]
-//   layers      number of layers, in [1e-4, 1e5]; in [0.0001, 100000]
+//   layers      number of layers, in [1e-4, 1e5]
 //   returns     1 - (1 - alpha)^layers, in [0, 1]
 //   degenerate  alpha = 0: 0
 //   form        vair_log_one_minus_thin and vair_one_minus_exp_neg_doubling_short: no
@@ -3531,7 +3518,7 @@ highp vec3 vair_shell_offset_nonzero(highp vec3 position, highp vec3 n, highp fl
 // Power sin(n, w)^p, accurate at every angle and for every exponent.
 //   n           hair direction; unit vector
 //   w           direction to the light, or half vector; unit vector
-//   p           exponent, in [0, 1e5]; in [0, 100000]
+//   p           exponent, in [0, 1e5]
 //   returns     sin(n, w)^p, in [0, 1]; not below e^-80 = 1.8e-35 unless it is 0
 //   degenerate  w = n and w = -n, and sines below 1e-19: 0 for p > 0; p = 0: 1 everywhere
 //   form        exp(p / 2 log sin^2). Near the hair sin^2 comes from the cross product of sum and
@@ -3762,8 +3749,8 @@ highp float vair_wrapped_sum(highp float a, highp float b) {
 }
 
 // Rotation of a point on the unit torus: the same point set, decorrelated from pixel to pixel.
-//   u           point in [0, 1)^2; in [0, 0.99999994]
-//   shift       displacement in [0, 1)^2, for instance from a hash of the pixel; in [0, 0.99999994]
+//   u           point in [0, 1)^2
+//   shift       displacement in [0, 1)^2, for instance from a hash of the pixel
 //   returns     u + shift modulo 1, in [0, 1)^2; bit-exact on every target where both are multiples
 //               of 2^-24, as hammersley, vair_r2_sequence and vair_unit_float give them
 //   error       absolute <= 3e-7: u and shift in [0, 1); exact for multiples of 2^-24
@@ -3969,7 +3956,7 @@ highp float vair_log_cosine_squared(highp float sine_squared, highp float cosine
 // Power c^exponent of a cosine c >= 0, accurate as c -> 1 and as c -> 0.
 //   sine_squared    1 - c^2, computed directly; in [0, 1]
 //   cosine_squared  c^2, computed directly; in [0, 1]
-//   exponent        exponent, in [0, 1e5]; in [0, 100000]
+//   exponent        exponent, in [0, 1e5]
 //   returns         c^exponent, in [0, 1] up to rounding; not below e^-80 = 1.8e-35
 //   degenerate      exponent = 0: 1
 //   form            exp(exponent log(c^2) / 2), by vair_log_cosine_squared. A logarithm that
@@ -3983,7 +3970,7 @@ highp float vair_cosine_power(highp float sine_squared, highp float cosine_squar
 
 // Power |h.z|^exponent of the half vector h = g / |g|.
 //   g         vair_half_sum of l and v; in [-2, 2]
-//   exponent  exponent, in [0, 1e5]; in [0, 100000]
+//   exponent  exponent, in [0, 1e5]
 //   returns   in [0, 1] up to rounding; the same for h and -h
 //   form      squares of sine and cosine from the components of g, so that neither h -> n nor h ->
 //             horizon cancels; g itself is exact where it is small
@@ -4048,7 +4035,7 @@ highp float vair_ashikhmin_shirley_pdf(highp vec3 l, highp vec3 v, highp float e
 
 // Defect q = 1 - cos of the angle that a uniform number selects from the density cos^(exponent -
 // 1).
-//   u         uniform number in [0, 1); 0 is the peak; in [0, 0.99999994]
+//   u         uniform number in [0, 1); 0 is the peak
 //   exponent  m >= 1; the distribution of the cosine is c^m; in [1, 100001]
 //   returns   1 - (1 - u)^(1 / m), in [0, 1); cos = 1 - q, sin = sqrt(q (2 - q))
 //   form      1 - e^-x of x = -log(1 - u) / m, both without cancellation: narrow lobes keep all
@@ -4059,8 +4046,7 @@ highp float vair_power_defect(highp float u, highp float exponent) {
 }
 
 // Direction to the light, drawn with density vair_ashikhmin_shirley_pdf.
-//   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v; in [0,
-//               0.99999994]
+//   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
 //   exponent_x  sharpness across the tangent direction; in [0, 100000]
 //   exponent_y  sharpness across the bitangent direction; in [0, 100000]
@@ -4140,8 +4126,7 @@ highp vec3 vair_around_axis(highp float q, highp float turns) {
 }
 
 // Direction to the light, drawn with density vair_blinn_phong_pdf.
-//   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v; in [0,
-//               0.99999994]
+//   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
 //   exponent    p, sharpness of the lobe; in [0, 100000]
 //   returns     unit vector, possibly below the horizon
@@ -4250,8 +4235,7 @@ highp float vair_ggx_pdf(highp vec3 l, highp vec3 v, highp float alpha_x, highp 
 }
 
 // Direction to the light, drawn with density vair_ggx_pdf: v mirrored about a visible normal.
-//   u           pair of uniform numbers in [0, 1); u.y = 0 is the middle of the visible normals; in
-//               [0, 0.99999994]
+//   u           pair of uniform numbers in [0, 1); u.y = 0 is the middle of the visible normals
 //   v           direction to the viewer, in the local frame; unit vector
 //   alpha_x     width along the tangent; in [0.0001, 1]
 //   alpha_y     width along the bitangent; in [0.0001, 1]
@@ -4322,7 +4306,7 @@ highp float vair_lambert_pdf(highp vec3 l, highp vec3 v) {
 }
 
 // Direction to the light, drawn with density vair_lambert_pdf.
-//   u           pair of uniform numbers in [0, 1); in [0, 0.99999994]
+//   u           pair of uniform numbers in [0, 1)
 //   v           direction to the viewer, in the local frame; without influence; unit vector
 //   returns     unit vector with z > 0: vair_hemisphere_cosine(u)
 //   degenerate  u.x = 0 or u.y = 0: the normal, the peak of the lobe. vair_hemisphere_cosine puts
@@ -4381,8 +4365,7 @@ highp float vair_phong_pdf(highp vec3 l, highp vec3 v, highp float exponent) {
 }
 
 // Direction to the light, drawn with density vair_phong_pdf.
-//   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v; in [0,
-//               0.99999994]
+//   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
 //   exponent    p, sharpness of the lobe; in [0, 100000]
 //   returns     unit vector, possibly below the horizon. The weight value l.z / pdf is (p + 2) / (p
@@ -4476,8 +4459,7 @@ highp float vair_poulin_fournier_pdf(highp vec3 l, highp vec3 v, highp float spr
 }
 
 // Direction to the light, drawn with density vair_poulin_fournier_pdf.
-//   u           pair of uniform numbers in [0, 1); u.x < 1 - specular is the diffuse part; in [0,
-//               0.99999994]
+//   u           pair of uniform numbers in [0, 1); u.x < 1 - specular is the diffuse part
 //   v           direction to the viewer, in the local frame; unit vector
 //   spread      half angle of each cylinder's arc, in radians; in [0.001, 1.57079637]
 //   specular    share of the samples that mirror v about a facet; the rest is cosine-distributed;
@@ -4817,7 +4799,7 @@ highp float vair_strand_pdf(highp vec3 l, highp vec3 v, highp float exponent) {
 
 // Direction to the light, drawn with density vair_strand_pdf: near the cone of mirror directions
 // around x.
-//   u           pair of uniform numbers in [0, 1); u.x = 0 is on the cone; in [0, 0.99999994]
+//   u           pair of uniform numbers in [0, 1); u.x = 0 is on the cone
 //   v           direction to the viewer, in the local frame; unit vector
 //   exponent    p, sharpness of the lobe; in [0, 100000]
 //   returns     unit vector anywhere on the sphere; on a surface half of the samples are below the
@@ -4904,8 +4886,7 @@ highp float vair_ward_pdf(highp vec3 l, highp vec3 v, highp float alpha_x, highp
 }
 
 // Direction to the light, drawn with density vair_ward_pdf.
-//   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v; in [0,
-//               0.99999994]
+//   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
 //   alpha_x     root mean square slope along the tangent; in [0.0001, 1]
 //   alpha_y     root mean square slope along the bitangent; in [0.0001, 1]
