@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import trimesh
 
-from codegen.errors import UserError
+from codegen.fur.surface import load_mesh
 
 Doubles = npt.NDArray[np.float64]
 
@@ -30,16 +30,7 @@ class Mesh:
 
 def read_mesh(path: Path, subdivide: int = 0) -> Mesh:
     """Read a mesh file; `subdivide` times Loop subdivision rounds a coarse mesh off."""
-    if not path.is_file():
-        raise UserError(f"{path}: there is no such mesh file")
-    try:
-        loaded = trimesh.load_mesh(str(path), process=False)
-    except Exception as error:  # trimesh raises whatever its many format readers raise
-        raise UserError(f"{path}: cannot be read as a mesh ({_first_line(error)})") from error
-    if not isinstance(loaded, trimesh.Trimesh) or len(loaded.faces) == 0:
-        raise UserError(f"{path}: holds no triangles")
-    if not np.isfinite(loaded.vertices).all():
-        raise UserError(f"{path}: has a vertex that is not finite")
+    loaded = load_mesh(path)
     loaded.merge_vertices(merge_tex=True, merge_norm=True)  # one normal per place
     return smooth(loaded.subdivide_loop(subdivide) if subdivide else loaded)
 
@@ -51,8 +42,3 @@ def smooth(surface: trimesh.Trimesh) -> Mesh:
         triangles=np.array(surface.faces, dtype=np.int64),
         normals=np.array(surface.vertex_normals, dtype=np.float64),
     )
-
-
-def _first_line(error: Exception) -> str:
-    text = str(error).strip()
-    return text.splitlines()[0] if text else type(error).__name__
