@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import importlib.resources
 from collections.abc import Sequence
 from typing import Any
 
@@ -50,6 +51,14 @@ def texture_data(levels: tuple[Any, ...], repeat_u: bool, repeat_v: bool) -> Any
     """A map as runtimes take it: targets.textures.TextureData."""
     textures: Any = importlib.import_module("targets.textures")
     return textures.TextureData(levels, repeat_u, repeat_v)
+
+
+def fur_stages(target: str) -> dict[str, str]:
+    """The texts that stages of fur are made from, by file name; a target without any draws no fur."""
+    folder = importlib.resources.files(f"targets.{target}") / "fur"
+    if not folder.is_dir():
+        raise UserError(f"target {target} draws no fur; glsl and wgsl do")
+    return {file.name: file.read_text(encoding="utf-8") for file in folder.iterdir() if file.is_file()}
 
 
 def open_runtime(target: str) -> Any:

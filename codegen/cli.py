@@ -27,6 +27,7 @@ COMMANDS = {
     "check": "conformance.commands.check:command",
     "scene": "codegen.commands.scene:command",
     "render": "conformance.commands.render:command",
+    "fur": "conformance.commands.fur:command",
     "report": "conformance.commands.report:command",
 }
 """Subcommand -> where it lives; what runs on devices lives in conformance and is loaded by name."""

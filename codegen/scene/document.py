@@ -1,7 +1,7 @@
 """Scene files as data: what is shaded, what is known of its parameters, directions and lights.
 
-The tables [scene], [shade], [parameters], [view] and [lights] are read here; [render], which only a picture
-needs, is left to whoever draws one. examples/scenes/README.md lists every key.
+The tables [scene], [shade], [parameters], [view] and [lights] are read here; [render] and [fur], which only a
+picture needs, are left to whoever draws one. examples/scenes/README.md lists every key.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from codegen.scene.settings import Setting, read_settings
 from codegen.scene.tables import Table, read_tables, show
 from codegen.scene.view import Facts, read_facts
 
-TABLES = ("scene", "shade", "parameters", "view", "lights", "render")
+TABLES = ("scene", "shade", "parameters", "view", "lights", "render", "fur")
 HALF_STEP = 1.0 / 510.0
 BUDGETS = {"exact": 0.0, "quarter-step-8bit": 0.5 * HALF_STEP, "half-step-8bit": HALF_STEP}
 """Named budgets: the largest absolute error of the shaded value. An 8-bit step is 1/255; rounding to the

@@ -26,7 +26,7 @@ def command(scene: Path, target: str | None, output: Path) -> None:
         raise UserError(f"rendering needs the package {error.name}; install vair[render]") from error
     console, start = Console(stderr=True), time.perf_counter()
     with console.status(f"rendering {scene}"):
-        backend = render(load_library(), scene, target, output)
+        name, driver = render(load_library(), scene, target, output)
     if console.is_terminal:
         seconds = time.perf_counter() - start
-        console.print(f"{output}: {backend.name}, {backend.driver}, {seconds:.1f} s", highlight=False)
+        console.print(f"{output}: {name}, {driver}, {seconds:.1f} s", highlight=False)

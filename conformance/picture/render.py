@@ -12,6 +12,7 @@ import numpy.typing as npt
 from codegen.errors import UserError
 from codegen.library import Library
 from conformance.picture.backends import models, open_backend
+from conformance.picture.fur_render import render_fur
 from conformance.picture.image import write_png
 from conformance.picture.mesh import Mesh, read_mesh
 from conformance.picture.scene import Picture, Scene, read_scene
@@ -71,12 +72,16 @@ def set_up(path: Path, available: Models) -> Studio:
     return Studio(scene, scene.picture, shading, read_mesh(scene.picture.mesh, scene.picture.subdivide))
 
 
-def render(library: Library, scene: Path, target: str | None, output: Path) -> Backend:
-    """Shade a scene on a target (the scene's first one if None), write the PNG, return who shaded it.
+def render(library: Library, scene: Path, target: str | None, output: Path) -> tuple[str, str]:
+    """Shade a scene on a target (the scene's first one if None), write the PNG, return target and driver.
+
+    A scene with a [fur] table is drawn as shells and fins, by the stages that `vair fur` writes.
 
     errors  UserError for a fault in the scene, the mesh or the output, and without a driver
     """
+    if read_scene(scene).fur is not None:
+        return render_fur(library, scene, target, output)
     studio = set_up(scene, models(library))
     backend = open_backend(target or studio.scene.targets[0], library)
     write_png(output, eight_bit(studio.develop(studio.shade(backend))))
-    return backend
+    return backend.name, backend.driver

@@ -1,7 +1,8 @@
 """Scene files: what is shaded, with which parameters, and what a picture of it needs.
 
 The tables [scene], [shade], [parameters], [view] and [lights] say what is known of a scene; [render]
-adds what only a picture needs: a mesh, a camera, lights, how the surface is brushed.
+adds what only a picture needs: a mesh, a camera, lights, how the surface is brushed; [fur] the coat
+on it, where it bears one.
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ from codegen.errors import UserError, nearest
 from codegen.scene.document import BUDGETS
 from codegen.scene.tables import Table, is_number, read_tables, show
 from conformance.picture.brush import Brush
+from conformance.picture.fur_settings import Fur, read_fur
 from conformance.picture.visibility import Camera
 
-TABLES = ("scene", "shade", "parameters", "view", "lights", "render")
+TABLES = ("scene", "shade", "parameters", "view", "lights", "render", "fur")
 TARGETS = ("glsl", "wgsl", "opencl")
 
 Triple = tuple[float, float, float]
@@ -69,6 +71,7 @@ class Scene:
     min_n_dot_v  least n.v that occurs
     lights       how many directional lights there are
     picture      None without a [render] table
+    fur          None without a [fur] table
     """
 
     path: Path
@@ -80,6 +83,7 @@ class Scene:
     min_n_dot_v: float
     lights: int
     picture: Picture | None = field(default=None)
+    fur: Fur | None = field(default=None)
 
 
 def read_scene(path: Path) -> Scene:
@@ -97,6 +101,7 @@ def read_scene(path: Path) -> Scene:
         min_n_dot_v=view.number("min_n_dot_v", -1.0, 1.0, -1.0),
         lights=_lights(lights, picture),
         picture=picture,
+        fur=read_fur(tables["fur"]),
     )
     for table in (scene, shade, view, lights):
         table.close()

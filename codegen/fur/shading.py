@@ -1,0 +1,118 @@
+"""Any shading function of the library as the lighting of fur: what its parameters are bound to.
+
+Directions and the light come from the stage; everything else is a material that the host sets, a member of
+the uniform block each.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from codegen.emit import wrap
+from codegen.emit.dialect import Dialect
+from codegen.emit.expr import ExprPrinter
+from codegen.errors import UserError
+from codegen.ir import nodes as ir
+from codegen.ir.types import F32, VEC3, Scalar, Struct, Type, Vector
+from codegen.library import Library
+
+FROM_STAGE = ("n", "t", "l", "v", "h", "light")
+SCALED = {"coat.density": "density_share", "coat.hair_length": "length_share"}
+"""Properties of the coat that vertices may scale, and the variable of the stage that does."""
+HALF_VECTOR = "half_vector"
+
+
+@dataclass(frozen=True)
+class Slot:
+    """One member of the material.
+
+    path  as scenes name it: the parameter, dotted for a field of a struct
+    name  in the uniform block
+    """
+
+    path: str
+    name: str
+    type: Scalar | Vector
+
+
+@dataclass(frozen=True)
+class FurShading:
+    """A shading function ready to be called by a stage."""
+
+    function: ir.Function
+    material: tuple[Slot, ...]
+
+    def statements(self, dialect: Dialect, prefix: str) -> list[str]:
+        """Statements that leave in `reflected` what the function sends to the eye of one light.
+
+        They use n, t, l, v, light, length_share and density_share of the stage.
+        """
+        printer = ExprPrinter(dialect)
+        names = {p.name for p in self.function.parameters}
+        lines: list[str] = []
+
+        def let(name: str, type_: str, value: str) -> list[str]:
+            head = f"let {name}" if dialect.declaration == "name: type" else f"{type_} {name}"
+            return wrap.code(f"{head} = {value};", "")
+
+        vec3 = dialect.types["vec3"]
+        if "h" in names:
+            lines += let("h", vec3, f"{prefix}{HALF_VECTOR}(l, v)")
+        args: list[ir.Expr] = []
+        for p in self.function.parameters:
+            argument = self._argument(p.name, p.type, p.name, prefix)
+            if isinstance(argument, ir.Construct):
+                lines += let(p.name, argument.type.name, printer.show(argument))
+                argument = ir.Var(argument.type, p.name)
+            args.append(argument)
+        value = printer.show(ir.Call(VEC3, prefix + self.function.name, tuple(args)))
+        return [*lines, *let("reflected", vec3, value if "light" in names else f"light * {value}")]
+
+    def members(self, dialect: Dialect) -> list[str]:
+        """The material's members of the uniform block."""
+        types = dialect.types
+        if dialect.declaration == "name: type":
+            return [f"{slot.name}: {types[slot.type.name]}," for slot in self.material]
+        return [f"{types[slot.type.name]} {slot.name};" for slot in self.material]
+
+    def _argument(self, name: str, type_: Type, path: str, prefix: str) -> ir.Expr:
+        if path in FROM_STAGE:
+            return ir.Var(type_, name)
+        if isinstance(type_, Struct):
+            fields = tuple(self._argument(f.name, f.type, f"{path}.{f.name}", prefix) for f in type_.fields)
+            return ir.Construct(Struct(prefix + type_.name, type_.fields), fields)
+        member = ir.Var(type_, f"fur.{member_name(path)}")
+        if path in SCALED:
+            return ir.Binary(F32, "*", member, ir.Var(F32, SCALED[path]))
+        return member
+
+
+def member_name(path: str) -> str:
+    """The uniform member of a parameter."""
+    return f"shade_{path.replace('.', '_')}"
+
+
+def fur_shading(library: Library, name: str) -> FurShading:
+    """The lighting of fur by a function of the library.
+
+    errors  UserError for an unknown name, and for functions that need what a coat does not have
+    """
+    function = library.function(name)
+    if function.returns != VEC3:
+        raise UserError(f"{name} cannot shade fur: it returns no colour")
+    slots = []
+
+    def visit(path: str, type_: Type) -> None:
+        if path in FROM_STAGE:
+            return
+        if isinstance(type_, Struct):
+            for field in type_.fields:
+                visit(f"{path}.{field.name}", field.type)
+        elif isinstance(type_, Scalar | Vector) and path != "map_tangent":
+            slots.append(Slot(path, member_name(path), type_))
+        else:
+            raise UserError(f'{name} cannot shade fur: a coat has no "{path}"')
+
+    for parameter in function.parameters:
+        visit(parameter.name, parameter.type)
+    return FurShading(function, tuple(slots))

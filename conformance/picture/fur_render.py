@@ -1,0 +1,176 @@
+"""From a scene with a [fur] table to a picture, drawn by OpenGL or WebGPU with the generated stages."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from codegen.backends import open_runtime
+from codegen.errors import UserError
+from codegen.fur.coat import FurMesh, grow
+from codegen.fur.kit import kit_files
+from codegen.fur.layout import Block, uniform_block
+from codegen.fur.shading import FurShading, fur_shading
+from codegen.fur.stages import DIALECTS, stage_texts
+from codegen.fur.states import pass_states
+from codegen.library import Library
+from conformance.picture.backends import models
+from conformance.picture.fur_frame import ball, frame_values, view_projection
+from conformance.picture.fur_settings import Fur
+from conformance.picture.image import write_png
+from conformance.picture.scene import Picture, Scene, read_scene
+from conformance.picture.shade import bind
+from conformance.picture.tone import eight_bit, gradient
+from targets.raster import Draw
+from targets.raster import Scene as Drawing
+
+Doubles = npt.NDArray[np.float64]
+
+LARGEST_SIDE = 8192
+DEPTH_FROM = {"glsl": -1.0, "wgsl": 0.0}
+INTERFACES = {"opengl": "glsl", "webgpu": "wgsl"}
+
+
+@dataclass(frozen=True)
+class FurStudio:
+    """A scene with fur made ready: everything that does not depend on the target."""
+
+    library: Library
+    scene: Scene
+    picture: Picture
+    fur: Fur
+    shading: FurShading
+    material: Mapping[str, Any]
+    mesh: FurMesh
+
+    @property
+    def block(self) -> Block:
+        """The uniform block of the stages."""
+        return uniform_block((slot.name, slot.type) for slot in self.shading.material)
+
+    @property
+    def drawn_size(self) -> tuple[int, int]:
+        """Samples (width, height)."""
+        width, height = self.picture.size
+        return width * self.picture.supersample, height * self.picture.supersample
+
+    def values(self, target: str) -> dict[str, Any]:
+        """Values by member of the uniform block."""
+        width, height = self.picture.size
+        bounds = ball(self.mesh, self.fur.length)
+        camera = self.picture.camera
+        matrix = view_projection(camera, width / height, bounds, DEPTH_FROM[target])
+        frame = frame_values(self.fur, self.mesh, camera, self.picture.lights, self.material)
+        return {"view_projection": matrix.T.reshape(-1), **frame}
+
+    def kit(self) -> dict[str, bytes]:
+        """The files that an engine needs, see codegen.fur.kit."""
+        matrices = {name: self.values(target)["view_projection"] for name, target in INTERFACES.items()}
+        frame = {name: value for name, value in self.values("wgsl").items() if name != "view_projection"}
+        camera = self.picture.camera
+        scene = {
+            "name": self.scene.name,
+            "size": list(self.picture.size),
+            "camera": {
+                "eye": camera.eye,
+                "target": camera.target,
+                "up": camera.up,
+                "field_of_view": camera.field_of_view,
+            },
+            "background": {"top": self.picture.top, "bottom": self.picture.bottom},
+            "layers": self.fur.layers,
+            "fins": self.fur.fins,
+        }
+        return kit_files(self.library, self.shading, self.block, self.mesh, frame, matrices, scene)
+
+    def draws(self, stages: Mapping[str, tuple[str, str]]) -> list[Draw]:
+        """The draw calls: base, shells from the inner to the outer one, fins.
+
+        stages  vertex and fragment stage by pass
+        """
+        mesh, states = self.mesh, pass_states(closed=self.mesh.findings["border edges"] == 0)
+        fins = int(self.fur.fins and self.fur.layers > 1)
+        calls = [
+            Draw(*stages["base"], mesh.vertices, mesh.triangles, 1, states["base"]),
+            Draw(*stages["shell"], mesh.vertices, mesh.triangles, self.fur.layers - 1, states["shell"]),
+            Draw(*stages["fin"], mesh.fin_vertices, mesh.fin_triangles, fins, states["fin"]),
+        ]
+        return [call for call in calls if call.instances > 0]
+
+
+def set_up_fur(library: Library, path: Path, *, pictured: bool = True, **changes: Any) -> FurStudio:
+    """Read and check a scene file with fur, and grow the fur on its mesh.
+
+    pictured  whether a picture is to be drawn; otherwise it may have shadows and any size
+    changes   fields of [render] that are set otherwise than in the file
+    errors    UserError
+    """
+    scene = read_scene(path)
+    if scene.picture is None or scene.fur is None:
+        missing = "[render]" if scene.picture is None else "[fur]"
+        raise UserError(f"{path}: has no {missing} table, which a picture of fur needs")
+    picture = replace(scene.picture, **changes)
+    if pictured and picture.shadows:
+        raise UserError(f"{path}: [render] shadows: fur is drawn without cast shadows; set it to false")
+    if pictured and max(picture.size) * picture.supersample > LARGEST_SIDE:
+        raise UserError(f"{path}: [render] size times supersample may be {LARGEST_SIDE} at most")
+    bound = bind(scene, models(library))
+    shading = fur_shading(library, bound.function)
+    mesh = grow(picture.mesh, scene.fur.spacing, scene.fur.combing, picture.subdivide, scene.fur.channels)
+    return FurStudio(library, scene, picture, scene.fur, shading, bound.values, mesh)
+
+
+def open_drawing(studio: FurStudio, target: str) -> Drawing:
+    """The scene's draw calls on a target's device.
+
+    errors  UserError for targets that draw no fur, and without a driver
+    """
+    if target not in DIALECTS:
+        raise UserError(f"target {target} draws no fur; {' and '.join(DIALECTS)} do")
+    texts = stage_texts(studio.library, studio.shading, target, DIALECTS[target][0])
+    runtime = open_runtime(target)
+    if target == "glsl":
+        from targets.glsl.raster import GlslScene
+
+        passes = {name: (texts[f"{name}.vert"], texts[f"{name}.frag"]) for name in ("base", "shell", "fin")}
+        return GlslScene(runtime, studio.draws(passes), studio.drawn_size)
+    from targets.wgsl.raster import WgslScene
+
+    entries = {name: (f"{name}_vertex", f"{name}_fragment") for name in ("base", "shell", "fin")}
+    return WgslScene(runtime, texts["fur.wgsl"], studio.draws(entries), studio.drawn_size)
+
+
+def draw_fur(studio: FurStudio, target: str) -> Doubles:
+    """The picture (height, width, 3) in linear light, over the background."""
+    drawing = open_drawing(studio, target)
+    samples = drawing.draw(studio.block.pack(studio.values(target)))
+    drawing.release()
+    return develop(studio.picture, samples)
+
+
+def render_fur(library: Library, path: Path, target: str | None, output: Path) -> tuple[str, str]:
+    """Draw a scene's fur on a target (the scene's first one if None) and write the PNG.
+
+    returns  the target and its driver
+    errors   UserError
+    """
+    studio = set_up_fur(library, path)
+    chosen = target or studio.scene.targets[0]
+    write_png(output, eight_bit(draw_fur(studio, chosen)))
+    device = open_runtime(chosen).device
+    return chosen, f"{device.driver}, {device.device}"
+
+
+def develop(picture: Picture, samples: npt.NDArray[np.float32]) -> Doubles:
+    """Samples (height s, width s, 4), premultiplied, averaged into pixels over the background."""
+    width, height = picture.size
+    side = picture.supersample
+    mean = samples.astype(np.float64).reshape(height, side, width, side, 4).mean(axis=(1, 3))
+    background = gradient(picture.size, picture.top, picture.bottom)
+    light: Doubles = mean[..., :3] + (1.0 - mean[..., 3:]) * background
+    return light
