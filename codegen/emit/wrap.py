@@ -8,8 +8,12 @@ import textwrap
 WIDTH = 100
 
 
-def code(line: str, indent: str) -> list[str]:
-    """The statement as lines of at most WIDTH columns where it can be broken at all."""
+def code(line: str, indent: str, hang: str | None = None) -> list[str]:
+    """The statement as lines of at most WIDTH columns where it can be broken at all.
+
+    hang  what further lines start with; a step more than the first if None
+    """
+    hang = indent + "    " if hang is None else hang
     if len(indent) + len(line) <= WIDTH:
         return [indent + line]
     limit = WIDTH - len(indent)
@@ -32,8 +36,7 @@ def code(line: str, indent: str) -> list[str]:
     shallowest = min(depth for depth, _ in good)
     position = max(p for depth, p in good if depth == shallowest)
     first, rest = line[:position], line[position + 1 :]
-    hang = indent if indent.endswith("        ") and indent.startswith("    " * 3) else indent + "    "
-    return [indent + first, *code(rest, hang)]
+    return [indent + first, *code(rest, hang, hang)]
 
 
 def comment(text: str, first: str, rest: str) -> list[str]:

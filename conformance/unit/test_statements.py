@@ -67,10 +67,10 @@ LINES = {
         "",
         [f"a, f({'p' * 30}, {SHORT},", f"    {SHORT});"],
     ),
-    "deep lines hang where they are": (
+    "further lines hang by one step": (
         f"{SHORT}, {SHORT}, {SHORT};",
         " " * 20,
-        [" " * 20 + f"{SHORT},", " " * 20 + f"{SHORT},", " " * 20 + f"{SHORT};"],
+        [" " * 20 + f"{SHORT},", " " * 24 + f"{SHORT},", " " * 24 + f"{SHORT};"],
     ),
     "a full line is kept": (
         f"{'a' * (WIDTH - 5)} + b, c;",
