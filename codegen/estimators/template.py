@@ -96,7 +96,8 @@ for i in range(min(samples, MOST_SAMPLES)):
     if pdf > SMALLEST_DENSITY$lit:
         weight = ${lobe}_value(l, viewer$arguments)$height / pdf
         w = to_world(frame, l)
-        total += weight * env_radiance(env, w, env_lod(env, w, pdf, f32(count)))
+        lod = env_lod(env, w, pdf, f32(count))
+        total += weight * env_radiance(env, w, lod)
 return total / f32(count)
 """,
     (
@@ -178,7 +179,8 @@ for i in range(min(samples, MOST_SAMPLES)):
         value = ${lobe}_value(l, viewer$arguments)
         weight = value$cosine * solid_angle
         if weight > 0.0:
-            total += weight * env_radiance(env, w, env_lod(env, w, 1.0 / solid_angle, 1.0))
+            lod = env_lod(env, w, 1.0 / solid_angle, 1.0)
+            total += weight * env_radiance(env, w, lod)
 return total
 """,
     (

@@ -64,7 +64,8 @@ def env_grid_ashikhmin_shirley(
             value = ashikhmin_shirley_value(l, viewer, exponent_x, exponent_y)
             weight = value * max(l.z, 0.0) * solid_angle
             if weight > 0.0:
-                total += weight * env_radiance(env, w, env_lod(env, w, 1.0 / solid_angle, 1.0))
+                lod = env_lod(env, w, 1.0 / solid_angle, 1.0)
+                total += weight * env_radiance(env, w, lod)
     return total
 
 
@@ -140,7 +141,8 @@ def env_filtered_ashikhmin_shirley(
         if pdf > SMALLEST_DENSITY and l.z > 0.0:
             weight = ashikhmin_shirley_value(l, viewer, exponent_x, exponent_y) * l.z / pdf
             w = to_world(frame, l)
-            total += weight * env_radiance(env, w, env_lod(env, w, pdf, f32(count)))
+            lod = env_lod(env, w, pdf, f32(count))
+            total += weight * env_radiance(env, w, lod)
     return total / f32(count)
 
 

@@ -56,7 +56,8 @@ def env_grid_lambert(
             value = lambert_value(l, viewer)
             weight = value * max(l.z, 0.0) * solid_angle
             if weight > 0.0:
-                total += weight * env_radiance(env, w, env_lod(env, w, 1.0 / solid_angle, 1.0))
+                lod = env_lod(env, w, 1.0 / solid_angle, 1.0)
+                total += weight * env_radiance(env, w, lod)
     return total
 
 
@@ -116,7 +117,8 @@ def env_filtered_lambert(
         if pdf > SMALLEST_DENSITY and l.z > 0.0:
             weight = lambert_value(l, viewer) * l.z / pdf
             w = to_world(frame, l)
-            total += weight * env_radiance(env, w, env_lod(env, w, pdf, f32(count)))
+            lod = env_lod(env, w, pdf, f32(count))
+            total += weight * env_radiance(env, w, lod)
     return total / f32(count)
 
 

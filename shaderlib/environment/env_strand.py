@@ -57,7 +57,8 @@ def env_grid_strand(
             value = strand_value(l, viewer, exponent)
             weight = value * solid_angle
             if weight > 0.0:
-                total += weight * env_radiance(env, w, env_lod(env, w, 1.0 / solid_angle, 1.0))
+                lod = env_lod(env, w, 1.0 / solid_angle, 1.0)
+                total += weight * env_radiance(env, w, lod)
     return total
 
 
@@ -119,7 +120,8 @@ def env_filtered_strand(
         if pdf > SMALLEST_DENSITY:
             weight = strand_value(l, viewer, exponent) / pdf
             w = to_world(frame, l)
-            total += weight * env_radiance(env, w, env_lod(env, w, pdf, f32(count)))
+            lod = env_lod(env, w, pdf, f32(count))
+            total += weight * env_radiance(env, w, lod)
     return total / f32(count)
 
 
