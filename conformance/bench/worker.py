@@ -99,9 +99,9 @@ class Channel:
         self._stream.flush()
 
 
-def opened(job: Job) -> TimedRuntime:
-    """The driver's runtime; raises TargetUnavailable."""
-    return open_driver(driver(job.driver)) if job.driver else open_runtime(job.target)
+def opened_driver(target: str, name: str) -> TimedRuntime:
+    """The runtime of a driver by name, or of the one that the target prefers; raises TargetUnavailable."""
+    return open_driver(driver(name)) if name else open_runtime(target)
 
 
 def backend_of(runtime: TimedRuntime) -> Backend:
@@ -119,7 +119,7 @@ def measure(job: Job, say: Say) -> dict[str, Any]:
     end = time.monotonic() + job.seconds if job.seconds else math.inf
     library = peers.library()
     chosen = sorted(groups(library, job.functions), key=lambda g: g.base.name not in SPEED)
-    runtime = opened(job)
+    runtime = opened_driver(job.target, job.driver)
     bench = Bench(library, runtime, job.effort)
     on = backend_of(runtime)
     say("started", total=len(chosen) + 2, software=bench.software)

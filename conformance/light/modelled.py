@@ -13,7 +13,7 @@ from codegen.maps.radiance import read_radiance
 from conformance.light import estimators, plan
 from conformance.light.environment import Environment, MapSampler
 from conformance.light.lobes import Lobe, View
-from conformance.light.plan import Plan, Progress
+from conformance.light.plan import Plan
 
 Array = npt.NDArray[np.float64]
 
@@ -89,16 +89,3 @@ def slope(curve: Curve) -> float:
     if len(curve.samples) < 2 or min(curve.rms) <= 0.0:
         return math.nan
     return float(np.polyfit(np.log(curve.samples), np.log(curve.rms), 1)[0])
-
-
-def measure(chosen: Plan, progress: Progress = lambda step: None) -> dict[str, dict[str, dict[str, Curve]]]:
-    """Curves by map, lobe and estimator."""
-    maps = environments(chosen)
-    samplers = {name: MapSampler(here) for name, here in maps.items()}
-    found: dict[str, dict[str, dict[str, Curve]]] = {name: {} for name in maps}
-    for lobe in chosen.lobes:
-        progress(str(lobe))
-        truth = truths(chosen, lobe, maps)
-        for name, here in maps.items():
-            found[name][str(lobe)] = curves(chosen, lobe, here, samplers[name], truth[name])
-    return found

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +15,6 @@ from conformance.light.lobes import Lobe, View, about
 from conformance.reference.sampling import cranley_patterson, sphere_uniform
 
 Array = npt.NDArray[np.float64]
-Progress = Callable[[str], None]
 
 DATA = default_root().parent / "examples" / "data"
 SEED = 20_267
@@ -46,15 +44,19 @@ class Plan:
 
     lobes, maps  what is estimated, and under which maps of examples/data
     counts       numbers of samples
+    timed        those of them whose time is measured; between two of them it lies on a line
     views        surface frames, spread over the sphere
     shifts       random shifts of the samples for each view
+    rounds       of launches, for the time
     """
 
     lobes: tuple[Lobe, ...] = LOBES
     maps: tuple[str, ...] = ("dawn", "venice", "studio")
     counts: tuple[int, ...] = tuple(2**k for k in range(3, 13))
+    timed: tuple[int, ...] = tuple(2**k for k in range(3, 13, 3))
     views: int = 12
     shifts: int = 2
+    rounds: int = 6
 
     @staticmethod
     def quick() -> Plan:
@@ -65,6 +67,7 @@ class Plan:
             ("dawn",),
             tuple(2**k for k in range(3, 13, 3)),
             views=6,
+            rounds=3,
         )
 
     def described(self) -> str:

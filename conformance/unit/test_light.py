@@ -2,41 +2,25 @@
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from codegen.maps import latlong, prefilter
-from conformance.light import estimators
+from conformance.light import estimators, published
 from conformance.light.environment import Environment, MapSampler, NearestTexel
-from conformance.light.lobes import Lobe, PowerLobe, View, about, along_x
+from conformance.light.lobes import Lobe, PowerLobe, View, about
+from conformance.light.published import FIGURES, Kind, environment, sampler, truth, views
 from conformance.reference.lobes import LOBES
 from conformance.reference.sampling import sphere_uniform
 
-DATA = Path(__file__).parents[2] / "examples" / "data"
-FIGURES: dict[str, Any] = tomllib.loads(
-    (Path(estimators.__file__).parent / "figures.toml").read_text(encoding="utf-8")
-)
 SETTINGS = {"exponent": 20.0, "exponent_x": 10.0, "exponent_y": 100.0, "alpha_x": 0.2, "alpha_y": 0.4}
 SETTINGS |= {"spread": 0.9, "specular": 0.5}
 VIEW = np.array([0.3, -0.4, np.sqrt(0.75)])
 ROUNDING = 1e-9
 """Float64 sums of at most a few thousand terms of order 1."""
-
-
-@cache
-def environment(name: str) -> Environment:
-    return Environment.read(DATA / f"{name}.exr")
-
-
-@cache
-def sampler(name: str) -> MapSampler:
-    return MapSampler(environment(name))
 
 
 def lobe(name: str) -> Lobe:
@@ -51,7 +35,7 @@ def sky(height: int = 64) -> Environment:
     )
 
 
-def views(count: int) -> View:
+def around(count: int) -> View:
     normals = np.asarray(sphere_uniform(estimators.sequence(count)))
     return about(normals, np.broadcast_to(VIEW, normals.shape))
 
@@ -61,7 +45,7 @@ def views(count: int) -> View:
 
 @pytest.mark.parametrize("name", sorted(LOBES))
 def test_every_estimator_of_every_lobe_agrees_with_quadrature_on_a_smooth_sky(name: str) -> None:
-    here, view, chosen, u = sky(32), views(3), lobe(name), estimators.sequence(2048)
+    here, view, chosen, u = sky(32), around(3), lobe(name), estimators.sequence(2048)
     right = estimators.quadrature(here, view, chosen)
     found = {
         "plain": estimators.plain(here, view, chosen, u),
@@ -77,7 +61,7 @@ def test_every_estimator_of_every_lobe_agrees_with_quadrature_on_a_smooth_sky(na
 
 @pytest.mark.parametrize("count", [1, 7, 40])
 def test_a_constant_sky_is_found_by_one_sample_of_a_lobe_that_is_its_own_density(count: int) -> None:
-    here, view = Environment(np.full((32, 64, 3), 2.5)), views(5)
+    here, view = Environment(np.full((32, 64, 3), 2.5)), around(5)
     for estimate in (estimators.plain, estimators.filtered, estimators.guarded):
         found = estimate(here, view, PowerLobe(parameters=(30.0,)), estimators.sequence(count))
         assert np.abs(found - 2.5).max() <= ROUNDING
@@ -86,7 +70,7 @@ def test_a_constant_sky_is_found_by_one_sample_of_a_lobe_that_is_its_own_density
 @pytest.mark.parametrize("name", sorted(LOBES))
 @pytest.mark.parametrize("pixels", [np.zeros((4, 8, 3)), np.full((1, 1, 3), 2.0), np.full((3, 5, 3), 1e5)])
 def test_black_tiny_and_bright_maps_stay_finite(name: str, pixels: np.ndarray) -> None:
-    here, view, chosen = Environment(pixels, size=8), views(3), lobe(name)
+    here, view, chosen = Environment(pixels, size=8), around(3), lobe(name)
     for count in (1, 3):
         u = estimators.sequence(count)
         for found in (
@@ -111,7 +95,7 @@ def test_the_map_sampler_draws_what_its_density_says() -> None:
 
 
 def test_plain_estimates_converge_at_the_rate_of_random_samples_and_filtering_leaves_a_bias() -> None:
-    here, view, chosen = environment("dawn"), views(6), lobe("phong")
+    here, view, chosen = environment("dawn"), around(6), lobe("phong")
     right = estimators.quadrature(here, view, chosen)
     generator = np.random.default_rng(11)
     allowed = FIGURES["rate"]
@@ -139,40 +123,15 @@ def near(found: float, expected: float) -> bool:
     return bool(abs(found - expected) <= allowed["absolute"] + allowed["relative"] * expected)
 
 
-@cache
-def truth(name: str, kind: str, exponent: float) -> np.ndarray:
-    """The sum of a lobe over a map's texels, for the power or the strand views."""
-    if kind == "power":  # the same sum, twenty times faster; test_maps holds it against the plain one
-        return prefilter.convolved(environment(name).pixels, exponent, power_views().normal)
-    return estimators.quadrature(environment(name), VIEWS[kind](), LOBE[kind](exponent))
-
-
-def power_views() -> View:
-    r = np.asarray(sphere_uniform(estimators.sequence(200)))
-    return about(r, np.broadcast_to(np.array([0.0, 0.0, 1.0]), r.shape))
-
-
-def strand_views() -> View:
-    return along_x(np.asarray(sphere_uniform(estimators.sequence(48))))
-
-
-VIEWS: dict[str, Callable[[], View]] = {"power": power_views, "strand": strand_views}
-LOBE: dict[str, Callable[[float], Lobe]] = {
-    "power": lambda exponent: PowerLobe(parameters=(exponent,)),
-    "strand": lambda exponent: Lobe("strand", (exponent,)),
-}
 DEFAULT = {"power": {("dawn", "10"), ("studio", "100")}, "strand": {("studio", "100")}}
 """The maps and exponents of a normal run; the others take minutes of quadrature and run nightly."""
 
 
-def errors(kind: str, name: str, exponent: float, *estimates: estimators.Estimator) -> list[float]:
-    """Errors of estimates with 40 samples."""
-    view, chosen, u = VIEWS[kind](), LOBE[kind](exponent), estimators.sequence(40)
-    right = truth(name, kind, exponent)
-    return [estimators.rms(estimate(environment(name), view, chosen, u), right) for estimate in estimates]
+def errors(kind: Kind, name: str, exponent: float, *estimates: estimators.Estimator) -> list[float]:
+    return [published.error(name, kind, exponent, estimate) for estimate in estimates]
 
 
-def rows(kind: str) -> list[Any]:
+def rows(kind: Kind) -> list[Any]:
     """One case per map and exponent."""
     return [
         pytest.param(
@@ -187,7 +146,7 @@ def rows(kind: str) -> list[Any]:
 
 
 @pytest.mark.parametrize("kind", ["power", "strand"])
-def test_every_published_map_and_exponent_has_a_case(kind: str) -> None:
+def test_every_published_map_and_exponent_has_a_case(kind: Kind) -> None:
     assert {(case.values[0]["map"], case.values[1]) for case in rows(kind)} >= DEFAULT[kind]
 
 
@@ -215,8 +174,9 @@ def test_grids_on_other_maps(row: dict[str, Any]) -> None:
 
 
 def grids_err_as_published(row: dict[str, Any]) -> None:
-    here, view, chosen = environment(row["map"]), power_views(), LOBE["power"](float(row["exponent"]))
-    right = truth(row["map"], "power", float(row["exponent"]))
+    here, exponent = environment(row["map"]), float(row["exponent"])
+    view, chosen = views("power"), published.lobe("power", exponent)
+    right = truth(row["map"], "power", exponent)
     for count, expected in row["weighted"].items():
         assert near(estimators.rms(estimators.grid(here, view, chosen, int(count)), right), expected)
     for count, expected in row["alike"].items():
@@ -241,7 +201,7 @@ def prefiltering_errs_as_published(row: dict[str, Any]) -> None:
         discs = prefilter.prefilter(environment(row["map"]).pixels, row["exponent"], size=int(size))
         lookup = Environment(np.zeros((2, 4, 3)), size=int(size))
         lookup.levels[0] = discs
-        assert near(estimators.rms(lookup.radiance(power_views().normal), right), expected)
+        assert near(estimators.rms(lookup.radiance(views("power").normal), right), expected)
 
 
 RANDOM_DEFAULT = {("dawn", "10")}
@@ -277,9 +237,8 @@ def test_lobe_and_map_together_gain_where_neither_is_much_better_alone() -> None
 def of_random_samples(name: str, exponent: float) -> dict[str, np.ndarray]:
     """Errors of batches of runs with 40 random samples, by how these are divided between lobe and map."""
     here = NearestTexel(environment(name).pixels, size=1)
-    r = power_views().normal[::4]
-    view = about(r, np.broadcast_to(np.array([0.0, 0.0, 1.0]), r.shape))
-    right = prefilter.convolved(here.pixels, exponent, r)
+    view = views("power", every=4)
+    right = prefilter.convolved(here.pixels, exponent, view.normal)
     ways = {
         "lobe": (40, 0, False),
         "map_alone": (0, 40, False),
@@ -292,7 +251,7 @@ def of_random_samples(name: str, exponent: float) -> dict[str, np.ndarray]:
         for way, (ours, theirs, power) in ways.items():
             points = generator.random((ours, 2)), generator.random((theirs, 2))
             estimate = estimators.combined(
-                here, view, LOBE["power"](exponent), *points, sampler(name), power=power
+                here, view, published.lobe("power", exponent), *points, sampler(name), power=power
             )
             squares[way].append(estimators.rms(estimate, right) ** 2)
     return {
@@ -317,10 +276,6 @@ def test_filtering_keeps_its_promises_on_dawn_for_sharper_lobes() -> None:
     assert errors("power", "dawn", float(sharp["exponent"]), estimators.guarded)[0] <= sharp["at_most"]
 
 
-def joined(here: Environment, view: View, chosen: Lobe, u: np.ndarray) -> np.ndarray:
-    return estimators.combined(here, view, chosen, *estimators.halves(len(u)), sampler("studio"))
-
-
 @pytest.mark.parametrize(
     "exponent",
     [
@@ -329,5 +284,7 @@ def joined(here: Environment, view: View, chosen: Lobe, u: np.ndarray) -> np.nda
     ],
 )
 def test_the_strand_lobe_on_a_peaked_map_gains_from_the_maps_own_samples(exponent: int) -> None:
-    isotropic, both = errors("strand", "studio", float(exponent), estimators.filtered, joined)
+    isotropic, both = errors(
+        "strand", "studio", float(exponent), estimators.filtered, published.combined("studio")
+    )
     assert both * FIGURES["promised"]["combined_studio"]["better_by"] <= isotropic
