@@ -26,6 +26,9 @@ static inline float4 ${prefix}lookup_level(
     float held = clamp(lod, 0.0f, (float)(t_layout.z - 1));
     int first = (int)held;
     float4 a = ${prefix}lookup_packed(t, t_sampler, t_layout, uv, first);
+    if (held == (float)first) {
+        return a;
+    }
     float4 b = ${prefix}lookup_packed(t, t_sampler, t_layout, uv, min(first + 1, t_layout.z - 1));
     return a + (held - (float)first) * (b - a);
 }
