@@ -83,7 +83,7 @@ def fitted(
         read = read_samples(path)
         factors = factorise(read, how)
         return factors, error(factors, read), path.stem
-    if path.exists():
+    if path.exists() or path.suffix == ".txt" or len(path.parts) > 1:
         material = read_waterloo(path)
         return material.factors, None, material.name
     if not 1000 <= samples <= 10_000_000:

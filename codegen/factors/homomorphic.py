@@ -24,7 +24,8 @@ Array = npt.NDArray[np.float64]
 SIZES = (2, 512)
 ANGLES = ("along", "across")
 """What r follows: asin(w.x), as `strand_table_uv`, or atan2(w.y, w.z), as `factored_satin_shade`."""
-ITERATIONS = 600
+ITERATIONS = 250
+"""With columns of one length; 600 are not enough without."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +118,11 @@ def factorise(samples: Samples, settings: Settings = Settings()) -> Factors:  # 
         weight[: len(channel)] = weights
         padded[: len(channel)] = weights * channel
         weighted = sparse.diags_array(weight) @ matrix
-        solutions.append(lsmr(weighted, padded, atol=1e-8, btol=1e-8, maxiter=ITERATIONS)[0])
+        lengths = np.sqrt(np.asarray(weighted.multiply(weighted).sum(axis=0)).ravel())
+        lengths[lengths == 0.0] = 1.0  # a texel of a grid of 2 x 2 that no sample reaches
+        scaled = weighted @ sparse.diags_array(1.0 / lengths)
+        found = lsmr(scaled, padded, atol=1e-8, btol=1e-8, maxiter=ITERATIONS)[0]
+        solutions.append(found / lengths)
     images = _images(np.stack(solutions, axis=-1), sizes)
     return _normalised(images, settings.angles)
 

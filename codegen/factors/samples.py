@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -61,8 +63,10 @@ def read_samples(path: Path) -> Samples:
     if path.suffix != ".csv":
         raise UserError(f'cannot read "{path}": samples are a .csv or .npz file')
     try:
+        if not path.read_text(encoding="utf-8").strip():
+            raise UserError(f"{path.name}: not a table of numbers: it is empty")
         table: Any = np.genfromtxt(path, delimiter=",", names=True, deletechars="", dtype=np.float64, ndmin=1)
-    except (ValueError, UnicodeDecodeError) as e:
+    except (ValueError, OSError) as e:  # an undecodable text is a ValueError
         raise UserError(f"{path.name}: not a table of numbers: {str(e).splitlines()[0]}") from None
     names = table.dtype.names or ()
     values = ("r", "g", "b") if "r" in names else ("value",)
@@ -80,13 +84,14 @@ def read_samples(path: Path) -> Samples:
 
 def _arrays(path: Path) -> tuple[Array, Array, Array]:
     try:
-        with np.load(path, allow_pickle=False) as data:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as data:
             for name in ("l", "v", "value"):
                 if name not in data:
                     raise UserError(f'{path.name}: the array "{name}" is missing{nearest(name, data.files)}')
             l, v, value = (np.asarray(data[name], np.float64) for name in ("l", "v", "value"))
-    except (ValueError, OSError, EOFError) as e:
-        raise UserError(f"{path.name}: not a readable .npz file: {str(e).splitlines()[0]}") from None
+    except (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error) as e:
+        reason = (str(e) or "it is damaged").splitlines()[0]
+        raise UserError(f"{path.name}: not a readable .npz file: {reason}") from None
     return l, v, value.reshape(len(value), -1) if value.ndim else value.reshape(1, 1)
 
 
@@ -102,6 +107,13 @@ def _checked(path: Path, l: Array, v: Array, value: Array) -> Samples:
                 f"{path.name}: row {row + 1}: {name} = ({', '.join(f'{c:g}' for c in w[row])}) is no unit "
                 f"vector with {name}.z >= 0"
             )
+    wrong = (np.isinf(value) | (value < 0.0)).any(axis=1)  # a missing value is NaN
+    if wrong.any():
+        row = int(np.flatnonzero(wrong)[0])
+        told = ", ".join(f"{x:g}" for x in value[row])
+        raise UserError(
+            f"{path.name}: row {row + 1}: the value {told} is no reflectance ({int(wrong.sum())} such rows)"
+        )
     found = Samples(l, v, value)
     usable = len(found.known())
     if usable < FEWEST:

@@ -15,8 +15,8 @@ from codegen.tables.axes import Axis
 Array = npt.NDArray[np.float64]
 Evaluated = Callable[[Array, Array], Array]
 
-SMALLEST, LARGEST = 8, 1024
-"""Texels along a side."""
+SMALLEST, LARGEST, LIMIT = 8, 1024, 8192
+"""Texels along a side: at least, at most unless asked for more, at most."""
 PROBE = 64
 """Size at which the warps are compared."""
 INSIDE = (0.25, 0.5, 0.75)
@@ -47,10 +47,13 @@ def tabulate(x: Axis, y: Axis, function: Evaluated, budget: float, largest: int 
 
     The warps are those that serve best at a size of PROBE.
 
-    raises  UserError where no table up to the largest size is good enough: says the best achievable
+    raises  UserError where no table up to the largest size is good enough: says the best achievable; for a
+            function that is not finite everywhere
     """
     if not budget > 0.0:
         raise UserError(f"budget {budget:g}: the largest error of a table is above 0")
+    if not SMALLEST <= largest <= LIMIT:
+        raise UserError(f"largest side {largest}: a table has {SMALLEST} to {LIMIT} texels along a side")
     warped = [(replace(x, warp=a), replace(y, warp=b)) for a in x.warps() for b in y.warps()]
     x, y = min(warped, key=lambda axes: made(axes[0], axes[1], function, PROBE, PROBE).error)
     size = SMALLEST
@@ -80,7 +83,7 @@ def _narrowed(table: Table, function: Evaluated, budget: float) -> Table:
 def made(x: Axis, y: Axis, function: Evaluated, width: int, height: int) -> Table:
     """A table of the size, with its largest measured error."""
     a, b = np.meshgrid(x.value(np.linspace(0.0, 1.0, width)), y.value(np.linspace(0.0, 1.0, height)))
-    values = function(a.ravel(), b.ravel()).reshape(height, width).astype(np.float32)
+    values = _finite(function, x, y)(a.ravel(), b.ravel()).reshape(height, width).astype(np.float32)
     table = Table(x, y, values, 0.0)
     a, b = np.meshgrid(x.value(_places(width)), y.value(_places(height)))
     worst = 0.0
@@ -89,6 +92,20 @@ def made(x: Axis, y: Axis, function: Evaluated, width: int, height: int) -> Tabl
         if flat_a.size:
             worst = max(worst, float(np.abs(table.value(flat_a, flat_b) - function(flat_a, flat_b)).max()))
     return replace(table, error=worst)
+
+
+def _finite(function: Evaluated, x: Axis, y: Axis) -> Evaluated:
+    """The function, which is refused where it has no finite value."""
+
+    def checked(a: Array, b: Array) -> Array:
+        found = np.asarray(function(a, b))
+        wrong = ~(np.abs(found) <= np.finfo(np.float32).max)
+        if wrong.any():
+            k = int(np.flatnonzero(wrong)[0])
+            raise UserError(f"the function is {found[k]:g} at {x.name} = {a[k]:g}, {y.name} = {b[k]:g}")
+        return found
+
+    return checked
 
 
 def _places(size: int) -> Array:

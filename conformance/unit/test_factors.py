@@ -10,13 +10,16 @@ import pytest
 
 from codegen.cli import run
 from codegen.errors import UserError
+from codegen.evaluate import evaluate
 from codegen.factors import grids
 from codegen.factors.homomorphic import Factors, Settings, error, factorise
+from codegen.factors.maps import SHADES, factor_maps, read_factor_maps
 from codegen.factors.samples import Samples, directions, read_samples
 from codegen.factors.source import draw_samples
 from codegen.factors.waterloo import read_waterloo, waterloo_files
 from codegen.library import load_library
 from codegen.maps.bilinear import lookup
+from codegen.maps.image import png
 from conformance.unit.support.tolerances import tolerance
 from conformance.unit.support.waterloo import SATIN, WATERLOO, cosine_weighted, viewer
 
@@ -29,7 +32,8 @@ def smooth_factors(channels: int = 1) -> Factors:
     p = np.exp(-0.3 * (x - 0.4) ** 2 - 0.2 * y)
     q = np.exp(-1.5 * (x - 0.5) ** 2 - 0.5 * (y - 0.5) ** 2)
     strength = np.array([1.0, 0.5, 0.25])[:channels]
-    return Factors(2.0 * strength, *(np.repeat(g[..., None] / g.max(), channels, axis=2) for g in (p, q)))
+    p, q = (np.repeat(g[..., None] / g.max(), channels, axis=2) for g in (p, q))
+    return Factors(2.0 * strength, p, q)
 
 
 # ------------------------------------------------------------------------------------------------ grids
@@ -126,6 +130,14 @@ def test_samples_from_text_and_from_arrays_are_the_same(tmp_path: Path) -> None:
     assert np.isnan(text.value[5, 2]) and len(text.known()) == len(arrays.known()) - 1
 
 
+def cut(path: Path) -> Path:
+    """A file of arrays that ends too early."""
+    l, v = directions(300, seed=7)
+    np.savez(path, l=l, v=v, value=np.ones((300, 1)))
+    path.write_bytes(path.read_bytes()[:500])
+    return path
+
+
 def test_what_holds_no_samples_gets_one_sentence(tmp_path: Path) -> None:
     header = "l.x,l.y,l.z,v.x,v.y,v.z,value"
     good = ["0,0,1,0,0,1,1"] * 200
@@ -138,6 +150,18 @@ def test_what_holds_no_samples_gets_one_sentence(tmp_path: Path) -> None:
         "samples are a .csv or .npz file": table(tmp_path / "4.txt", header, good),
         "no such file": tmp_path / "5.csv",
         "not a readable .npz file": table(tmp_path / "6.npz", header, good),
+        "row 8: the value -1 is no reflectance \\(1 such rows\\)": table(
+            tmp_path / "7.csv", header, [*good[:7], "0,0,1,0,0,1,-1", *good]
+        ),
+        "row 1: the value inf is no reflectance": table(
+            tmp_path / "8.csv", header, ["0,0,1,0,0,1,inf", *good]
+        ),
+        r"row 1: l = \(nan, 0, 1\) is no unit vector": table(
+            tmp_path / "9.csv", header, ["nan,0,1,0,0,1,1", *good]
+        ),
+        "0 samples have a value above 0": table(tmp_path / "10.csv", header, ["0,0,1,0,0,1,nan"] * 200),
+        "not a table of numbers: it is empty": table(tmp_path / "11.csv", "", []),
+        r"12\.npz: not a readable \.npz file": cut(tmp_path / "12.npz"),
     }
     for told, path in cases.items():
         with pytest.raises(UserError, match=told):
@@ -170,6 +194,22 @@ def test_what_is_no_material_gets_one_sentence(tmp_path: Path) -> None:
     bad.write_text("a\n0\n1 1 1\n")
     with pytest.raises(UserError, match="no such file"):
         read_waterloo(bad)
+    files = waterloo_files("a", "bad", smooth_factors(3))
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
+    (tmp_path / "bad_1.png").write_bytes(files["bad_1.png"][:-40])
+    with pytest.raises(UserError, match=r"bad_1\.png"):
+        read_waterloo(bad)
+    (tmp_path / "bad_1.png").write_bytes(b"not a picture")
+    with pytest.raises(UserError, match=r"bad_1\.png"):
+        read_waterloo(bad)
+    (tmp_path / "bad_1.png").write_bytes(png(np.ones((4, 8, 3))))
+    with pytest.raises(UserError, match=r"bad_1\.png: 8 x 4; a parabolic map is square"):
+        read_waterloo(bad)
+    foreign = tmp_path / "bad.jpg"
+    foreign.write_bytes(b"x")
+    with pytest.raises(UserError, match=r"a factored material is a \.txt file or a folder"):
+        read_waterloo(foreign)
 
 
 @pytest.mark.skipif(not WATERLOO.is_dir(), reason="the Waterloo data are not carried; see CREDITS.md")
@@ -208,6 +248,10 @@ def test_the_command_writes_images_scale_and_error(tmp_path: Path) -> None:
         (["lambert_value", "--format", "jpeg"], 'unknown format "jpeg"; valid names: exr, waterloo'),
         (["lambert_value", "--diffuse", "1"], "--diffuse 1: the constant part is in [0, 1)"),
         (["lambert_value", "--samples", "10"], "--samples 10: a fit takes 1000 to 10000000"),
+        (["lambert_value", "--emphasis", "2"], "emphasis 2: it is in [0, 1]"),
+        (["lambert_value", "--angles", "acros"], 'unknown angles of r "acros"; did you mean "across"?'),
+        (["none/such"], 'cannot read "none/such"'),
+        (["absent.txt"], 'cannot read "absent.txt": no such file'),
     ],
 )
 def test_bad_usage_gets_one_sentence_and_writes_nothing(
@@ -216,3 +260,51 @@ def test_bad_usage_gets_one_sentence_and_writes_nothing(
     assert run(["factor", *arguments, "-o", str(tmp_path / "out")]) == 2
     assert told in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_written_gets_one_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "file"
+    file.write_text("kept")
+    for output, told in ((file, "it is a file"), (tmp_path / "no" / "out", "does not exist")):
+        assert run(["factor", "lambert_value", "--samples", "1000", "--size-q", "8", "-o", str(output)]) == 2
+        assert told in capsys.readouterr().err
+    assert file.read_text() == "kept" and [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+# --------------------------------------------------------------------------------------- maps of factors
+
+
+@pytest.mark.parametrize("angles", ["", "along", "across"])
+def test_written_factors_are_read_as_maps(angles: str, tmp_path: Path) -> None:
+    third = ["--size-r", "8", "--angles", angles] if angles else []
+    arguments = ["lambert_value", "--samples", "1000", "--size-p", "4", "--size-q", "8", *third]
+    assert run(["factor", *arguments, "-o", str(tmp_path)]) == 0
+    maps = read_factor_maps(tmp_path)
+    assert (maps.name, maps.function) == ("lambert_value", SHADES[angles])
+    l, v = directions(200, seed=8)
+    inputs = {**maps.inputs(), "l": l, "v": v}
+    shaded = np.asarray(evaluate(load_library(), maps.function, inputs, "float64"))
+    assert np.abs(shaded * np.pi - l[:, 2:]).max() <= tolerance("half_vector_fit")
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{}", '{"scale": [1, 2], "angles": ""}', '{"scale": [1], "angles": "up"}']
+)
+def test_a_foreign_description_gets_one_sentence(text: str, tmp_path: Path) -> None:
+    (tmp_path / "factors.json").write_text(text)
+    with pytest.raises(UserError, match='not what "vair factor" writes'):
+        read_factor_maps(tmp_path)
+
+
+@pytest.mark.parametrize("angles", ["", "along", "across"])
+def test_the_emitted_function_computes_what_was_fitted(angles: str) -> None:
+    truth = smooth_factors(3)
+    y, x = np.mgrid[0:8, 0:8] / 8.0
+    r = np.repeat(np.exp(-x * y)[..., None], 3, axis=2)
+    factors = Factors(truth.scale, truth.p, truth.q, r, angles) if angles else truth
+    maps = factor_maps("smooth", factors)
+    l, v = directions(2000, seed=9)
+    shaded = np.asarray(evaluate(load_library(), maps.function, {**maps.inputs(), "l": l, "v": v}, "float64"))
+    assert np.abs(shaded - factors.value(l, v) * l[:, 2:]).max() <= tolerance("emitted_factors")

@@ -11,10 +11,12 @@ import pytest
 
 from codegen.cli import run
 from codegen.errors import UserError
+from codegen.evaluate import evaluate
 from codegen.library import load_library
 from codegen.maps.image import read_pixels
 from codegen.tables.arguments import two_arguments
 from codegen.tables.axes import Axis
+from codegen.tables.stored import read_angle_table
 from codegen.tables.tabulate import made, tabulate
 from conformance.unit.support.tolerances import tolerance
 
@@ -95,6 +97,8 @@ def test_the_command_writes_a_table_that_its_description_explains(tmp_path: Path
         (["pow_one_minus", "--range", "q=0"], '--range "q=0": it is NAME=LOW:HIGH'),
         (["strand_cosine", "--budget", "0"], "budget 0: the largest error of a table is above 0"),
         (["strand_cosine", "--budget", "1e-9", "--largest", "64"], "no table of 64 x 64 texels keeps within"),
+        (["strand_cosine", "--largest", "4"], "largest side 4: a table has 8 to 8192 texels along a side"),
+        (["strand_cosine", "--budget", "nan"], "budget nan: the largest error of a table is above 0"),
     ],
 )  # fmt: skip
 def test_bad_usage_gets_one_sentence_and_writes_nothing(
@@ -108,3 +112,38 @@ def test_bad_usage_gets_one_sentence_and_writes_nothing(
 def test_a_largest_size_below_what_is_tried_is_refused_with_the_size_tried() -> None:
     with pytest.raises(UserError, match="no table of 8 x 8 texels"):
         tabulate(Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0), lambda a, b: np.sin(50.0 * a), 1e-6, largest=8)
+
+
+def test_a_function_without_a_finite_value_is_refused_with_the_place() -> None:
+    x, y = Axis("a", 0.0, 1.0), Axis("b", 0.0, 1.0)
+    with pytest.raises(UserError, match="the function is inf at a = 0, b = 0"), np.errstate(divide="ignore"):
+        tabulate(x, y, lambda a, b: 1.0 / a, 1e-3)
+
+
+def test_a_folder_that_cannot_be_written_gets_one_sentence(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "file"
+    file.write_text("kept")
+    for output, told in ((file, "it is a file"), (tmp_path / "no" / "out", "does not exist")):
+        assert run(["table", "strand_cosine", "--budget", "0.1", "-o", str(output)]) == 2
+        assert told in capsys.readouterr().err
+    assert file.read_text() == "kept" and [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_written_table_is_read_as_a_map(tmp_path: Path) -> None:
+    assert run(["table", "strand_cosine", "--budget", "0.01", "-o", str(tmp_path / "cosine")]) == 0
+    table = read_angle_table(tmp_path / "cosine")
+    c = np.linspace(-1.0, 1.0, 41)
+    cos_l, cos_v = (grid.ravel() for grid in np.meshgrid(c, c))
+    inputs = {"table": table, "cos_l": cos_l, "cos_v": cos_v}
+    found = np.asarray(evaluate(load_library(), "strand_cosine_table", inputs, "float64"))
+    exact = np.sqrt((1.0 - cos_l**2) * (1.0 - cos_v**2)) - cos_l * cos_v
+    assert (
+        np.abs(found - exact).max() <= json.loads((tmp_path / "cosine" / "table.json").read_text())["budget"]
+    )
+    assert run(["table", "pow_one_minus", "--range", "p=4:64", "-o", str(tmp_path / "power")]) == 0
+    with pytest.raises(UserError, match="its axes are q by"):
+        read_angle_table(tmp_path / "power")
+    with pytest.raises(UserError, match=r"no table\.json"):
+        read_angle_table(tmp_path)
