@@ -3,12 +3,9 @@
 from shaderlib.constants import EXP_LIMIT
 from shaderlib.domains import Extinction, PathLength
 from shaderlib.lang import exp, f32, min, variant
+from shaderlib.numeric.exp_neg_powers import exp_neg_quadratic16
 
 # Minimax in the absolute error against e^-x; x is held at the limit, where both are below the error.
-# (1 + x (c1 + x c2))^16: 2.2e-4
-QUADRATIC16_1 = -0.0623984113  # bd7f957a
-QUADRATIC16_2 = 0.00180275296  # 3aec4a5a
-QUADRATIC16_LIMIT = 17.0
 # (1 + x (c1 + x (c2 + x c3)))^16: 6e-6
 CUBIC16_1 = -0.0624962859  # bd7ffc1b
 CUBIC16_2 = 0.00194483367  # 3afee9ca
@@ -59,9 +56,4 @@ def coat_transmittance_quadratic16(extinction: Extinction, path: PathLength) -> 
     form        four squarings; neither exponential nor division. Opaque coats keep up to 2.3e-4 of the light
     source      fitted for this library
     """
-    x = min(extinction * path, QUADRATIC16_LIMIT)
-    r = 1.0 + x * (QUADRATIC16_1 + x * QUADRATIC16_2)
-    r2 = r * r
-    r4 = r2 * r2
-    r8 = r4 * r4
-    return r8 * r8
+    return exp_neg_quadratic16(extinction * path)
