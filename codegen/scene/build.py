@@ -22,15 +22,14 @@ from codegen.passes.specialise import Specialised, specialise
 from codegen.scene import environment, spirv, stopwatch, text
 from codegen.scene.document import Scene
 from codegen.scene.environment import ConstantLight, MapError
-from codegen.scene.errors import Floats, Reference, as_floats
+from codegen.scene.errors import Floats, as_floats
 from codegen.scene.general import General, general_function
-from codegen.scene.knowledge import Given, Knowledge, knowledge, model_ranges
+from codegen.scene.knowledge import Given, Knowledge
 from codegen.scene.lights import UNROLLED
 from codegen.scene.points import SEED, Points, draw
 from codegen.scene.prices import Prices
 from codegen.scene.proof import Proof, Results, prove
 from codegen.scene.reduce import Reduced, Reducer
-from codegen.scene.search import Search
 from codegen.scene.stopwatch import Speed
 
 SEARCH_POINTS = 20_000
@@ -113,13 +112,9 @@ class Builder:
         general = general_function(self.scene, constant)
         self.library.bounds  # noqa: B018  read once, for all libraries that extend this one
         library = self.library.with_functions([general.function])
-        known = knowledge(self.scene, general)
         self.say("searching")
-        points = draw(self.scene, general, SEARCH_POINTS)
-        reference = Reference.of(library, general.function.name, points)
-        search = Search(library, general, reference, model_ranges(self.scene, general))
-        self.check_budget(reference.rounding)
-        reducer = Reducer(library, general, known, reference, search, self.scene.function)
+        reducer = Reducer.of(library, self.scene, general, draw(self.scene, general, SEARCH_POINTS))
+        self.check_budget(reducer.reference.rounding)
         reduced = {}
         for target in self.scene.dialects:
             self.say(f"searching for {target}")
@@ -144,7 +139,7 @@ class Builder:
         return Outcome(
             scene=self.scene,
             general=general,
-            known=known,
+            known=reducer.knowledge,
             targets=results,
             remaining=left,
             environment=error,

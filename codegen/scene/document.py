@@ -58,7 +58,8 @@ def read_scene(path: Path, library: Library) -> Scene:
     tables = read_tables(path, TABLES)
     scene, shade = tables["scene"], tables["shade"]
     name = scene.text("name", path.stem)
-    budget, budget_text = _budget(scene)
+    stated = scene.number_or_name("budget", BUDGETS, 0.0, 1e6, "exact")
+    budget, budget_text = (BUDGETS[stated], stated) if isinstance(stated, str) else (stated, show(stated))
     dialects = _dialects(scene)
     model = find_model(library, shade)
     function = _function_name(shade, name, library)
@@ -70,28 +71,14 @@ def read_scene(path: Path, library: Library) -> Scene:
     return Scene(path, name, function, dialects, budget, budget_text, model, settings, facts, lights)
 
 
-def _budget(table: Table) -> tuple[float, str]:
-    value = table.value("budget", "exact")
-    if isinstance(value, str):
-        if value not in BUDGETS:
-            raise table.error("budget", f'unknown budget "{value}"{nearest(value, BUDGETS)}, or a number')
-        return BUDGETS[value], value
-    return table.number("budget", 0.0, 1e6), show(value)
-
-
 def _dialects(table: Table) -> dict[str, str]:
-    value = table.value("targets", TARGETS)
-    if not isinstance(value, list | tuple) or not value or not all(isinstance(t, str) for t in value):
-        raise table.error("targets", f'must be an array of targets, as ["glsl", "wgsl"], not {show(value)}')
-    for target in value:
-        if target not in TARGETS:
-            raise table.error("targets", f'unknown target "{target}"{nearest(target, TARGETS)}')
+    targets = table.choices("targets", "target", TARGETS)
     wanted = table.table("dialects")
     for target in wanted.content:
-        if target not in value:
-            raise wanted.error(target, f"is no target of this scene{nearest(target, value)}")
+        if target not in targets:
+            raise wanted.error(target, f"is no target of this scene{nearest(target, targets)}")
     chosen = {}
-    for target in dict.fromkeys(value):
+    for target in targets:
         try:
             chosen[target] = dialect(target, wanted.content.get(target)).name
         except UserError as e:

@@ -136,6 +136,17 @@ def _sine_by_cross(e: ir.Expr, definitions: Definitions) -> ir.Expr | None:
     return ir.Binary(F32, "*", _number(2.0), root)
 
 
+def _sine_by_rejection(e: ir.Expr, definitions: Definitions) -> ir.Expr | None:
+    """Twice a sine: 2 |b - (a.b) a|."""
+    pair = _sine_of(e, definitions)
+    if pair is None:
+        return None
+    a, b = pair
+    rest = ir.Binary(VEC3, "-", b, ir.Binary(VEC3, "*", ir.Builtin(F32, "dot", (a, b)), a))
+    root = ir.Builtin(F32, "sqrt", (ir.Builtin(F32, "dot", (rest, rest)),))
+    return ir.Binary(F32, "*", _number(2.0), root)
+
+
 def _self_dot(e: ir.Expr, definitions: Definitions) -> ir.Expr | None:
     e = _looked_up(e, definitions)
     if isinstance(e, ir.Builtin) and e.op == "dot" and e.args[0] == e.args[1]:
@@ -196,6 +207,31 @@ def _mirror_cosine(e: ir.Expr, definitions: Definitions) -> ir.Expr | None:
     )
 
 
+def _factor_inside(e: ir.Expr, definitions: Definitions) -> ir.Expr | None:
+    """(a x + h) w with scalars x, h, w, as a (x w) + h w: two products of scalars for one of a vector."""
+    if not (isinstance(e, ir.Binary) and e.op == "*" and isinstance(e.type, Vector)):
+        return None
+    for total, factor in ((e.left, e.right), (e.right, e.left)):
+        total = _looked_up(total, definitions)
+        if isinstance(total, ir.Binary) and total.op in "+-" and factor.type == F32:
+            sides = [_onto_scalar(_looked_up(s, definitions), factor) for s in (total.left, total.right)]
+            if sides[0] is not None and sides[1] is not None:
+                return replace(total, left=sides[0], right=sides[1])
+    return None
+
+
+def _onto_scalar(e: ir.Expr, factor: ir.Expr) -> ir.Expr | None:
+    """A vector that is a multiple by a scalar, or has equal components, times a scalar."""
+    if isinstance(e, ir.Construct) and len(e.args) == 1:
+        return replace(e, args=(ir.Binary(F32, "*", e.args[0], factor),))
+    if isinstance(e, ir.Binary) and e.op == "*":
+        if e.right.type == F32:
+            return replace(e, right=ir.Binary(F32, "*", e.right, factor))
+        if e.left.type == F32:
+            return replace(e, left=ir.Binary(F32, "*", e.left, factor))
+    return None
+
+
 def _one_product(e: ir.Expr, definitions: Definitions) -> ir.Expr | None:
     """A vector of equal components times a scalar: one product, then the vector. Exact."""
     if not (isinstance(e, ir.Binary) and e.op == "*" and isinstance(e.type, Vector)):
@@ -212,17 +248,22 @@ SPLAT = Form("one product", "equal components by one product", _one_product)
 """Exact: it needs no budget."""
 COSINE = Form("sine by cosine", "sines as sqrt(1 - cosine^2)", _sine_by_cosine)
 CROSS = Form("sine by cross product", "sines as |a x b|", _sine_by_cross)
+REJECTION = Form("sine by rejection", "sines as |b - (a.b) a|", _sine_by_rejection)
 PLAIN = Form("plain cross product", "(a - b) x (a + b) as 2 a x b", _plain_cross)
 SPLIT = Form("dot of a sum", "a.(b + c) as a.b + a.c", _dot_of_sum)
 MIRROR = Form("mirror cosine", "1 - defect as sin sin - cos cos", _mirror_cosine)
+INSIDE = Form("factor inside", "(a x + h) w as a (x w) + h w", _factor_inside)
 BUNDLES: tuple[tuple[Form, ...], ...] = (
     (COSINE, SPLIT, MIRROR),
     (COSINE, SPLIT),
     (COSINE,),
+    (REJECTION, SPLIT, MIRROR),
     (CROSS, SPLIT, MIRROR),
+    (REJECTION,),
     (CROSS,),
     (PLAIN,),
     (SPLIT, MIRROR),
     (SPLIT,),
+    (INSIDE,),
 )
 """What is tried together, cheapest first: a sum of dots pays only where its parts are there already."""

@@ -18,13 +18,16 @@ from codegen.passes.operations import operations
 from codegen.passes.powers import LARGEST, ROWS
 from codegen.passes.specialise import Specialised, specialise
 from codegen.passes.text import show
+from codegen.scene.document import Scene
 from codegen.scene.drops import terms, without
 from codegen.scene.errors import Measured, Reference
 from codegen.scene.general import General
-from codegen.scene.knowledge import Knowledge
+from codegen.scene.knowledge import Knowledge, knowledge, model_ranges
 from codegen.scene.lights import UNROLLED
 from codegen.scene.loosen import BUNDLES, SPLAT, loosened
+from codegen.scene.points import Points
 from codegen.scene.prices import Prices
+from codegen.scene.scales import gathered
 from codegen.scene.search import Found, Search
 from codegen.scene.sites import Path, plainly_named
 
@@ -87,6 +90,13 @@ class Reducer:
     _errors: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
     _screened: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
 
+    @staticmethod
+    def of(library: Library, scene: Scene, general: General, points: Points) -> Reducer:
+        """The reducer of a scene over points of it; `library` holds the general function."""
+        reference = Reference.of(library, general.function.name, points)
+        search = Search(library, general, reference, model_ranges(scene, general))
+        return Reducer(library, general, knowledge(scene, general), reference, search, scene.function)
+
     def exact(self) -> Specialised:
         """The function after exact passes only."""
         return self.specialised({}, 0)
@@ -128,6 +138,7 @@ class Reducer:
             current = self.specialised(choices, powers)
             current = self.loosened(current, prices, budget, changes)
             current = self.dropped(current, prices, budget, changes)
+            current = self.gathered(current, prices, budget, changes)
             error = self.error(current)
         return Reduced(prices.target, exact, current, tuple(changes), error, prices.source, choices)
 
@@ -186,23 +197,46 @@ class Reducer:
         if joined is not None:
             made = self.cleaned(joined)
         for bundle in BUNDLES:
-            function, names = made.function, []
+            function, words = made.function, []
             for form in bundle:
                 looser = loosened(function, form)
                 if looser is not None:
                     function = looser
-                    names.append(form)
-            if not names or not self.passes(function, budget):
-                continue
-            candidate = self.cleaned(function)
-            before, after = prices.body(made.function), prices.body(candidate.function)
-            if after > (1.0 - SMALLEST_GAIN) * before:
-                continue
-            error = self.fits(candidate, budget)
-            if error is not None:
-                what = "; ".join(form.words for form in names)
-                changes.append(Change("form", what, _fewer(made, candidate), error.largest))
-                made = candidate
+                    words.append(form.words)
+            if words:
+                made = self.taken(made, function, "; ".join(words), prices, budget, changes)
+        return made
+
+    def taken(
+        self,
+        made: Specialised,
+        function: ir.Function,
+        what: str,
+        prices: Prices,
+        budget: float,
+        changes: list[Change],
+    ) -> Specialised:
+        """A changed function where it is cheaper and the budget holds its error; else the one before."""
+        if not self.passes(function, budget):
+            return made
+        candidate = self.cleaned(function)
+        before, after = prices.body(made.function), prices.body(candidate.function)
+        if after > (1.0 - SMALLEST_GAIN) * before:
+            return made
+        error = self.fits(candidate, budget)
+        if error is None:
+            return made
+        changes.append(Change("form", what, _fewer(made, candidate), error.largest))
+        return candidate
+
+    def gathered(
+        self, made: Specialised, prices: Prices, budget: float, changes: list[Change]
+    ) -> Specialised:
+        """Fewer multiplications by constants; twice, since what is cleaned may show more."""
+        for _ in range(2):
+            function = gathered(made.function)
+            if function is not None:
+                made = self.taken(made, function, "constant factors gathered", prices, budget, changes)
         return made
 
     def dropped(self, made: Specialised, prices: Prices, budget: float, changes: list[Change]) -> Specialised:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -94,6 +94,28 @@ class Table:
         if not is_number(value) or not low <= value <= high:
             raise self.error(key, f"must be a number from {low:g} to {high:g}, not {show(value)}")
         return float(value)
+
+    def number_or_name(
+        self, key: str, names: Collection[str], low: float, high: float, default: str | None = None
+    ) -> float | str:
+        """A number in [low, high], or one of some names for numbers."""
+        value = self.value(key, default)
+        if not isinstance(value, str):
+            return self.number(key, low, high)
+        if value not in names:
+            raise self.error(key, f'unknown {key} "{value}"{nearest(value, names)}, or a number')
+        return value
+
+    def choices(self, key: str, noun: str, valid: Sequence[str]) -> tuple[str, ...]:
+        """Some of the valid names, each once; all where the key is absent. `noun` is what one is called."""
+        value = self.value(key, tuple(valid))
+        if not isinstance(value, list | tuple) or not value or not all(isinstance(x, str) for x in value):
+            example = ", ".join(f'"{name}"' for name in valid[:2])
+            raise self.error(key, f"must be an array of {noun}s, as [{example}], not {show(value)}")
+        for name in value:
+            if name not in valid:
+                raise self.error(key, f'unknown {noun} "{name}"{nearest(name, valid)}')
+        return tuple(dict.fromkeys(value))
 
     def triple(self, key: str, default: Sequence[float] | None = None) -> tuple[float, float, float]:
         """Three numbers."""

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from codegen.errors import UserError, nearest
+from codegen.backends import TARGETS
+from codegen.errors import UserError
 from codegen.scene.document import BUDGETS
 from codegen.scene.tables import Table, is_number, read_tables, show
 from conformance.picture.brush import Brush
@@ -19,7 +20,6 @@ from conformance.picture.fur_settings import Fur, read_fur
 from conformance.picture.visibility import Camera
 
 TABLES = ("scene", "shade", "parameters", "view", "lights", "render", "fur")
-TARGETS = ("glsl", "wgsl", "opencl")
 
 Triple = tuple[float, float, float]
 Value = float | tuple[float, ...]
@@ -94,8 +94,8 @@ def read_scene(path: Path) -> Scene:
     result = Scene(
         path=path,
         name=scene.text("name", path.stem),
-        targets=_targets(scene),
-        budget=_budget(scene),
+        targets=scene.choices("targets", "target", TARGETS),
+        budget=scene.number_or_name("budget", BUDGETS, 0.0, 1e6) if "budget" in scene else None,
         model=shade.text("model"),
         parameters={key: _parameter(tables["parameters"], key) for key in tables["parameters"].content},
         min_n_dot_v=view.number("min_n_dot_v", -1.0, 1.0, -1.0),
@@ -106,25 +106,6 @@ def read_scene(path: Path) -> Scene:
     for table in (scene, shade, view, lights):
         table.close()
     return result
-
-
-def _targets(scene: Table) -> tuple[str, ...]:
-    value = scene.value("targets", TARGETS)
-    if not isinstance(value, list | tuple) or not value or not all(isinstance(t, str) for t in value):
-        raise scene.error("targets", f'must be an array of targets, as ["glsl", "wgsl"], not {show(value)}')
-    for target in value:
-        if target not in TARGETS:
-            raise scene.error("targets", f'unknown target "{target}"{nearest(target, TARGETS)}')
-    return tuple(value)
-
-
-def _budget(scene: Table) -> str | float | None:
-    if "budget" not in scene:
-        return None
-    value = scene.value("budget")
-    if isinstance(value, str) and value not in BUDGETS:
-        raise scene.error("budget", f'unknown budget "{value}"{nearest(value, BUDGETS)}, or a number')
-    return value if isinstance(value, str) else scene.number("budget", 0.0, 1e6)
 
 
 def _parameter(table: Table, key: str) -> Value | Range:

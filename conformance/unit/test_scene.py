@@ -32,14 +32,12 @@ from codegen.passes.operations import operations
 from codegen.scene import build, environment
 from codegen.scene.build import Builder, Outcome
 from codegen.scene.document import Scene, read_scene
-from codegen.scene.errors import Measured, Reference
+from codegen.scene.errors import Measured
 from codegen.scene.general import general_function
-from codegen.scene.knowledge import knowledge, model_ranges
 from codegen.scene.points import draw
 from codegen.scene.prices import Prices
 from codegen.scene.proof import Proof, prove
 from codegen.scene.reduce import Reduced, Reducer
-from codegen.scene.search import Search
 from conformance.unit.support.tolerances import floor, tolerance
 
 NEUTRAL = {
@@ -63,10 +61,7 @@ def scene_of(folder: Path, text: str) -> Scene:
 def reducer(scene: Scene, count: int = POINTS) -> Reducer:
     general = general_function(scene)
     library = load_library().with_functions([general.function])
-    points = draw(scene, general, count)
-    reference = Reference.of(library, general.function.name, points)
-    search = Search(library, general, reference, model_ranges(scene, general))
-    return Reducer(library, general, knowledge(scene, general), reference, search, scene.function)
+    return Reducer.of(library, scene, general, draw(scene, general, count))
 
 
 def reduced(scene: Scene, target: str = "glsl", count: int = POINTS) -> Reduced:

@@ -19,13 +19,11 @@ from codegen.kernels import kernel
 from codegen.library import Library
 from codegen.scene import stopwatch
 from codegen.scene.document import read_scene
-from codegen.scene.errors import Reference, as_floats
+from codegen.scene.errors import as_floats
 from codegen.scene.general import general_function
-from codegen.scene.knowledge import knowledge, model_ranges
 from codegen.scene.points import draw
 from codegen.scene.prices import Prices
 from codegen.scene.reduce import Reducer
-from codegen.scene.search import Search
 
 FOLDER = Path(__file__).parent
 SCENE = FOLDER / "dense-fur.toml"
@@ -65,9 +63,7 @@ def rows(library: Library, runtime: Any, target: str) -> list[Row]:
     general = general_function(scene)
     extended = library.with_functions([general.function])
     points = draw(scene, general, POINTS)
-    reference = Reference.of(extended, general.function.name, points)
-    search = Search(extended, general, reference, model_ranges(scene, general))
-    reducer = Reducer(extended, general, knowledge(scene, general), reference, search, scene.function)
+    reducer = Reducer.of(extended, scene, general, points)
     final = reducer.reduced(Prices.of(extended, target), scene.budget).final.function
     stand_ins = [stand_in(general.function, BY_HAND), stand_in(final, FIXED)]
     whole = extended.with_functions([final, *stand_ins])
@@ -79,7 +75,7 @@ def rows(library: Library, runtime: Any, target: str) -> list[Row]:
     for name in names:
         got = as_floats(values(whole, name, runtime, target, points.inputs, written.get(name)))
         finite: npt.NDArray[np.bool_] = np.asarray(np.isfinite(got).all(axis=1))
-        off = np.abs(np.where(finite[:, None], got, 0.0) - reference.exact).max(axis=1) / HALF_STEP
+        off = np.abs(np.where(finite[:, None], got, 0.0) - reducer.reference.exact).max(axis=1) / HALF_STEP
         speed = speeds[name]
         found.append(
             Row(
