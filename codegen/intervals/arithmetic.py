@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from codegen.intervals import numbers
+from codegen.intervals import bulk, numbers
 from codegen.intervals.accuracy import Row, Ulp
 from codegen.intervals.causes import Codes, first
 from codegen.intervals.context import Context
@@ -12,8 +12,6 @@ from codegen.intervals.numbers import LARGEST, SMALLEST, Array
 from codegen.intervals.values import Range
 
 _FAR = 2.0**1000
-PER_ULP = 1.0 + 2.0**-20
-"""Granted on a number of ULP that varies with the argument: it may then be taken at the interval's ends."""
 
 
 def settle(
@@ -25,20 +23,39 @@ def settle(
     normal (Vulkan says so); its neighbours are then not told apart: the interval reaches 0 and the smallest
     normal number.
     """
-    known: numbers.Reach | None = (found := numbers.reach(low, high))
-    if not numbers.usual(found):
-        known, same = None, low is high
-        low, high = _below_normal(context, low, high)
-        over = ~((low >= -LARGEST) & (high <= LARGEST))
-        if over.any():
-            fresh = over if codes is None else over & (codes == 0)
-            codes = context.unbounded(codes, fresh, "", "the result may overflow")
-            low, high, same = np.where(over, -np.inf, low), np.where(over, np.inf, high), False
-        if same and (low == high).all():
-            high = low
-    if codes is not None:
-        low, high, known = np.where(codes > 0, -np.inf, low), np.where(codes > 0, np.inf, high), None
-    return Range(low, high, codes, product, known)
+    found = numbers.reach(low, high)
+    if numbers.usual(found):
+        if codes is not None:
+            return anything(low, high, codes, product)
+        return Range(low, high, None, product, found)
+    same = low is high
+    low, high = _below_normal(context, low, high)
+    return bounded(context, low, high, codes, product, same)
+
+
+def bounded(
+    context: Context,
+    low: Array,
+    high: Array,
+    codes: Codes,
+    product: tuple[Array, Array] | None = None,
+    same: bool = False,
+) -> Range:
+    """A value from ends that are settled but may overflow; `same`: low and high were one array before."""
+    over = ~((low >= -LARGEST) & (high <= LARGEST))
+    if over.any():
+        fresh = over if codes is None else over & (codes == 0)
+        codes = context.unbounded(codes, fresh, "", "the result may overflow")
+        low, high, same = np.where(over, -np.inf, low), np.where(over, np.inf, high), False
+    if same and (low == high).all():
+        high = low
+    return Range(low, high, None, product) if codes is None else anything(low, high, codes, product)
+
+
+def anything(low: Array, high: Array, codes: Array, product: tuple[Array, Array] | None = None) -> Range:
+    """A value whose ends are infinite where it has a cause."""
+    unknown = codes > 0
+    return Range(np.where(unknown, -np.inf, low), np.where(unknown, np.inf, high), codes, product)
 
 
 def _below_normal(context: Context, low: Array, high: Array) -> tuple[Array, Array]:
@@ -69,6 +86,14 @@ def from_input(context: Context, given: Array) -> Range:
     return Range(a, a, _not_finite(context, a))
 
 
+def checked(context: Context, found: bulk.Found, codes: Codes) -> Range:
+    """A value that a loop over the lanes settled, looked at where it has to be."""
+    low, high, look, product = found
+    if look or codes is not None:
+        return bounded(context, low, high, codes, product)
+    return Range(low, high, None, product)
+
+
 def _not_finite(context: Context, a: Array) -> Codes:
     bad = ~np.isfinite(a)
     return context.unbounded(None, bad, "", "the input is not finite") if bad.any() else None
@@ -93,6 +118,8 @@ def negate(a: Range) -> Range:
 def add(context: Context, a: Range, b: Range) -> Range:
     """a + b, with the unrounded product of an operand where the table allows a multiply-add."""
     codes = first(a.cause, b.cause)
+    if (found := bulk.add(context, a, b)) is not None:
+        return checked(context, found, codes)
     if context.table.rounding == "nearest":
         total = a.low + b.low
         low, high = rounded(context, total, total if a.is_point and b.is_point else a.high + b.high)
@@ -126,8 +153,10 @@ def subtract(context: Context, a: Range, b: Range) -> Range:
 
 def multiply(context: Context, a: Range, b: Range) -> Range:
     """a b; a square where both are one value. Products of float32 are exact in float64."""
-    low, high = exact_product(a, b)
     codes = first(a.cause, b.cause)
+    if (found := bulk.multiply(context, a, b)) is not None:
+        return checked(context, found, codes)
+    low, high = exact_product(a, b)
     kept = (low, high) if context.table.fused and context.table.rounding == "nearest" else None
     low, high = rounded(context, low, high)
     return settle(context, low, high, codes, kept)
@@ -191,6 +220,10 @@ def divide(context: Context, row: Row, x: Range, y: Range) -> Range:
     although 2.5 ULP of a result near 0 would allow it to.
     """
     codes = first(x.cause, y.cause)
+    assert isinstance(row.accuracy, Ulp)
+    found = bulk.divide(context, row, x, y)
+    if found is not None and codes is None and not found[2]:
+        return Range(found[0], found[1])
     may_vanish = (y.low <= 0.0) & (y.high >= 0.0)
     codes = context.unbounded(codes, may_vanish & _clear(codes), "y", "the divisor may be 0")
     for operand, value in (("y", y), ("x", x)):
@@ -200,10 +233,10 @@ def divide(context: Context, row: Row, x: Range, y: Range) -> Range:
             bad = np.where(reciprocal, outside_magnitude(row.reciprocal, y), bad)
         if bad is not None:
             codes = context.unbounded(codes, bad & _clear(codes), operand, "outside the promised magnitudes")
+    if found is not None:
+        return bounded(context, found[0], found[1], codes)
     low, high = _quotient(x, y)
-    assert isinstance(row.accuracy, Ulp)
-    low, high = within_ulp(low, high, row.accuracy.ulps, row.accuracy.ulps)
-    return settle(context, low, high, codes)
+    return settled_within_ulp(context, low, high, row.accuracy.ulps, row.accuracy.ulps, codes)
 
 
 def _clear(codes: Codes) -> Array | bool:
@@ -225,6 +258,16 @@ def _quotient(x: Range, y: Range) -> tuple[Array, Array]:
     return np.minimum(x_low / y_high, x_low / y_low), np.maximum(x_high / y_low, x_high / y_high)
 
 
+def settled_within_ulp(
+    context: Context, low: Array, high: Array, ulps_low: float | Array, ulps_high: float | Array, codes: Codes
+) -> Range:
+    """A value within some ULP of exact values between two ends."""
+    if (found := bulk.within_ulp(context, low, high, ulps_low, ulps_high)) is not None:
+        return checked(context, found, codes)
+    low, high = within_ulp(low, high, ulps_low, ulps_high)
+    return settle(context, low, high, codes)
+
+
 def within_ulp(
     low: Array, high: Array, ulps_low: float | Array, ulps_high: float | Array
 ) -> tuple[Array, Array]:
@@ -237,16 +280,16 @@ def within_ulp(
     least = low - slack
     if low is high:
         most = high + slack
-        spacing = numbers.ulp(np.maximum(np.abs(least), np.abs(most))) * PER_ULP
+        spacing = numbers.ulp(np.maximum(np.abs(least), np.abs(most))) * numbers.PER_ULP
         first_low, last_high = least - spacing * ulps_low, most + spacing * ulps_high
     else:
         most = high + np.abs(high) * numbers.FLOAT64_MARGIN
-        spacing = numbers.ulp(least) * PER_ULP
+        spacing = numbers.ulp(least) * numbers.PER_ULP
         inside = np.minimum(least + spacing * ulps_low, most)
-        first_low = least - np.maximum(spacing, numbers.ulp(inside) * PER_ULP) * ulps_low
-        spacing = numbers.ulp(most) * PER_ULP
+        first_low = least - np.maximum(spacing, numbers.ulp(inside) * numbers.PER_ULP) * ulps_low
+        spacing = numbers.ulp(most) * numbers.PER_ULP
         inside = np.maximum(most - spacing * ulps_high, least)
-        last_high = most + np.maximum(spacing, numbers.ulp(inside) * PER_ULP) * ulps_high
+        last_high = most + np.maximum(spacing, numbers.ulp(inside) * numbers.PER_ULP) * ulps_high
     # Limits that are 0 where the sign is kept, and far beyond every result where there is none to keep.
     np.maximum(first_low, np.minimum(low, 0.0) * _FAR, out=first_low)
     np.minimum(last_high, np.maximum(high, 0.0) * _FAR, out=last_high)

@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from codegen.intervals import numbers
+from codegen.intervals import bulk, numbers
 from codegen.intervals.accuracy import Absolute, Inherited, Row, Ulp, Unstated
-from codegen.intervals.arithmetic import divide, outside, settle, within_ulp
+from codegen.intervals.arithmetic import checked, divide, outside, settle, settled_within_ulp, within_ulp
 from codegen.intervals.causes import Codes, first
 from codegen.intervals.context import Context
 from codegen.intervals.numbers import Array
@@ -31,6 +31,9 @@ def square_root(context: Context, x: Range) -> Range:
     row = context.table.row("sqrt")
     codes = context.unbounded(x.cause, _fresh(x.low < 0.0, x.cause), "x", "x may be negative")
     if isinstance(row.accuracy, Inherited):
+        rows = context.table.row("inverse_sqrt"), context.table.row("/")
+        if (quick := bulk.square_root(context, x, *rows)) is not None and codes is None and not quick[2]:
+            return Range(quick[0], quick[1])
         positive = Range(*_positive_part(x))
         found = divide(
             context,
@@ -43,8 +46,8 @@ def square_root(context: Context, x: Range) -> Range:
         return settle(context, low, high, codes)
     assert isinstance(row.accuracy, Ulp)
     low, high = np.sqrt(np.maximum(x.low, 0.0)), np.sqrt(np.maximum(x.high, 0.0))
-    low, high = within_ulp(low, low if x.is_point else high, row.accuracy.ulps, row.accuracy.ulps)
-    return settle(context, low, high, codes)
+    high = low if x.is_point else high
+    return settled_within_ulp(context, low, high, row.accuracy.ulps, row.accuracy.ulps, codes)
 
 
 def _one() -> Range:
@@ -61,6 +64,9 @@ def _positive_part(x: Range) -> tuple[Array, Array]:
 def inverse_square_root(context: Context, x: Range) -> Range:
     """1 / sqrt(x), anything where x may be 0 or less."""
     codes = context.unbounded(x.cause, _fresh(x.low <= 0.0, x.cause), "x", "x may be 0 or less")
+    quick = bulk.inverse_square_root(context, x, context.table.row("inverse_sqrt"))
+    if quick is not None:
+        return checked(context, quick, codes)
     low, high = _positive_part(x)
     found = inverse_root(context, Range(low, high), context.table.row("inverse_sqrt"))
     return settle(context, found.low, found.high, codes)
@@ -71,8 +77,7 @@ def inverse_root(context: Context, x: Range, row: Row) -> Range:
     assert isinstance(row.accuracy, Ulp)
     high = 1.0 / np.sqrt(x.low)
     low = high if x.is_point else 1.0 / np.sqrt(x.high)
-    low, high = within_ulp(low, high, row.accuracy.ulps, row.accuracy.ulps)
-    return settle(context, low, high)
+    return settled_within_ulp(context, low, high, row.accuracy.ulps, row.accuracy.ulps, None)
 
 
 def exponential(context: Context, name: str, x: Range) -> Range:
@@ -84,8 +89,8 @@ def exponential(context: Context, name: str, x: Range) -> Range:
     low = function(x.low)
     high = low if x.is_point else function(x.high)
     assert isinstance(row.accuracy, Ulp)
-    low, high = within_ulp(low, high, _ulps(row.accuracy, x.low, x), _ulps(row.accuracy, x.high, x))
-    return settle(context, low, high, x.cause)
+    ulps = _ulps(row.accuracy, x.low, x), _ulps(row.accuracy, x.high, x)
+    return settled_within_ulp(context, low, high, *ulps, x.cause)
 
 
 def _ulps(promise: Ulp, end: Array, x: Range) -> float | Array:
@@ -105,8 +110,7 @@ def logarithm(context: Context, name: str, x: Range) -> Range:
     low = _FUNCTIONS[name](positive_low)
     high = low if x.is_point else _FUNCTIONS[name](positive_high)
     if isinstance(row.accuracy, Ulp):
-        low, high = within_ulp(low, high, row.accuracy.ulps, row.accuracy.ulps)
-        return settle(context, low, high, codes)
+        return settled_within_ulp(context, low, high, row.accuracy.ulps, row.accuracy.ulps, codes)
     assert isinstance(row.accuracy, Absolute)
     low, high = _absolute_or_ulp(row.accuracy, Range(positive_low, positive_high), low, high)
     return settle(context, low, high, codes)
@@ -150,8 +154,7 @@ def sine(context: Context, name: str, x: Range) -> Range:
         low = np.where(_holds(x, crest + math.pi), -1.0, np.minimum(p, q))
         high = np.where(_holds(x, crest), 1.0, np.maximum(p, q))
     if isinstance(row.accuracy, Ulp):
-        low, high = within_ulp(low, high, row.accuracy.ulps, row.accuracy.ulps)
-        return settle(context, low, high, x.cause)
+        return settled_within_ulp(context, low, high, row.accuracy.ulps, row.accuracy.ulps, x.cause)
     assert isinstance(row.accuracy, Absolute)
     first_x, last_x = row.accuracy.within
     bad = (x.low < first_x) | (x.high > last_x)
@@ -186,8 +189,7 @@ def arc_tangent(context: Context, y: Range, x: Range) -> Range:
     cut = crosses & (x.low < 0.0)
     low, high = np.where(cut, -math.pi, low), np.where(cut, math.pi, high)
     assert isinstance(row.accuracy, Ulp)
-    low, high = within_ulp(low, high, row.accuracy.ulps, row.accuracy.ulps)
-    return settle(context, low, high, codes)
+    return settled_within_ulp(context, low, high, row.accuracy.ulps, row.accuracy.ulps, codes)
 
 
 def _bounded(context: Context, row: Row, x: Range) -> Range | None:

@@ -6,9 +6,17 @@ from functools import reduce
 
 import numpy as np
 
-from codegen.intervals import numbers
+from codegen.intervals import bulk, numbers
 from codegen.intervals.accuracy import Inherited, Scaled, Ulp
-from codegen.intervals.arithmetic import add, divide, exact_product, multiply, settle, subtract, within_ulp
+from codegen.intervals.arithmetic import (
+    add,
+    divide,
+    exact_product,
+    multiply,
+    settle,
+    settled_within_ulp,
+    subtract,
+)
 from codegen.intervals.causes import Codes, first
 from codegen.intervals.context import Context
 from codegen.intervals.elementary import inverse_square_root, square_root
@@ -39,6 +47,8 @@ def dot(context: Context, a: Ranges, b: Ranges) -> Range:
 
 def sum_in_any_order(context: Context, terms: list[Range]) -> Range:
     """The hull of the sums of the terms over all orders and groupings."""
+    if (quick := bulk.sum_of_three(context, terms)) is not None:
+        return quick
     sums: dict[frozenset[int], Range] = {frozenset([k]): term for k, term in enumerate(terms)}
 
     def total(of: frozenset[int]) -> Range:
@@ -85,8 +95,8 @@ def length(context: Context, x: Ranges) -> Range:
     assert isinstance(accuracy, Ulp)
     near, far = _exact_sum([exact_product(c, c) for c in x])
     ulps = accuracy.ulps + accuracy.per_component * len(x)
-    low, high = within_ulp(np.sqrt(np.maximum(near, 0.0)), np.sqrt(far), ulps, ulps)
-    return settle(context, low, high, _causes(x))
+    low, high = np.sqrt(np.maximum(near, 0.0)), np.sqrt(far)
+    return settled_within_ulp(context, low, high, ulps, ulps, _causes(x))
 
 
 def normalize(context: Context, x: Ranges) -> Ranges:
@@ -139,8 +149,7 @@ def _normalized(context: Context, k: int, x: Ranges, ulps: float, codes: Codes) 
 
     low = share(x[k].low, np.where(x[k].low >= 0.0, far, near))
     high = share(x[k].high, np.where(x[k].high >= 0.0, near, far))
-    low, high = within_ulp(low, high, ulps, ulps)
-    return settle(context, low, high, codes)
+    return settled_within_ulp(context, low, high, ulps, ulps, codes)
 
 
 def _exact_sum(terms: list[tuple[Array, Array]]) -> tuple[Array, Array]:

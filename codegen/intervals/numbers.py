@@ -24,6 +24,9 @@ FLOAT64_MARGIN = 2.0**-49
 numpy's vector routines state at most 4 ULP (numpy, "SIMD math", simd/ufuncs); glibc's state less.
 """
 
+PER_ULP = 1.0 + 2.0**-20
+"""Granted on a number of ULP that varies with the argument: it may then be taken at the interval's ends."""
+
 # The 29 bits of a float64 significand that a float32 significand lacks.
 _EXTRA = np.int64((1 << 29) - 1)
 _KEPT = np.int64(~((1 << 29) - 1))

@@ -115,7 +115,7 @@ class _Run:
         forks = np.full(self.count, -1, np.int32)
         widths = np.zeros(self.count, np.int32)
         for part, found in self.each_chunk(np.arange(self.count), None):
-            self.store(part, found, fresh=np.ones(len(part), np.bool_))
+            self.store(part, found)
             forks[part], widths[part] = found.first_fork, found.width
         if follow_forks and (forks >= 0).any():
             self.follow(np.flatnonzero(forks >= 0), forks, widths)
@@ -169,15 +169,26 @@ class _Run:
                 codes = np.where(codes > 0, codes, s.cause)
         return _Found(low, high, codes, context.first_fork, context.width), book
 
-    def store(self, lanes: Array, found: _Found, fresh: Array) -> None:
-        """Put results in: alone where fresh, else as the hull with what is there."""
+    def store(self, lanes: Array, found: _Found) -> None:
+        """Put results in, one for each lane."""
         for k, (low, high) in enumerate(zip(found.low, found.high, strict=True)):
-            self.low[k][lanes[fresh]] = low[fresh]
-            self.high[k][lanes[fresh]] = high[fresh]
-            np.minimum.at(self.low[k], lanes[~fresh], low[~fresh])
-            np.maximum.at(self.high[k], lanes[~fresh], high[~fresh])
-        self.codes[lanes[fresh]] = found.codes[fresh]
-        np.maximum.at(self.codes, lanes[~fresh], found.codes[~fresh])
+            self.low[k][lanes], self.high[k][lanes] = low, high
+        self.codes[lanes] = found.codes
+
+    def join(self, lanes: Array, found: _Found, seen: Array) -> None:
+        """Put the hulls of results in, several for a lane in a row; joined to what is there where seen."""
+        starts = np.flatnonzero(np.diff(lanes, prepend=-1))
+        mine = lanes[starts]
+        kept = seen[mine]
+
+        def joined(into: Array, results: Array, hull: np.ufunc) -> None:
+            new = hull.reduceat(results, starts)
+            into[mine] = np.where(kept, hull(into[mine], new), new)
+
+        for k, (low, high) in enumerate(zip(found.low, found.high, strict=True)):
+            joined(self.low[k], low, np.minimum)
+            joined(self.high[k], high, np.maximum)
+        joined(self.codes, found.codes, np.maximum)
 
     def follow(self, lanes: Array, forks: Array, widths: Array) -> None:
         """Split lanes at their first open fork until none is open, or DEPTH or MOST_PARTS is reached."""
@@ -203,11 +214,10 @@ class _Run:
                 open_fork[part], open_width[part] = found.first_fork, found.width
                 done = (found.first_fork < 0) | (depth == DEPTH - 1)
                 # The first finished way of a lane replaces its hull, later ones join it.
-                mine = owner[part][done]
-                first = np.zeros(len(mine), np.bool_)
-                first[np.unique(mine, return_index=True)[1]] = True
-                self.store(mine, found.select(done), first & ~seen[mine])
-                seen[mine] = True
+                if done.any():
+                    mine = owner[part][done]
+                    self.join(mine, found.select(done), seen)
+                    seen[mine] = True
             rest = open_fork >= 0
             owner, fork, width = owner[rest], open_fork[rest], open_width[rest]
             path = Ways(path.forks[rest], path.ways[rest])

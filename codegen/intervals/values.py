@@ -8,11 +8,12 @@ seen as such.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 
 from codegen.intervals.causes import Codes, first
+from codegen.intervals.compiled import ends, kernels, wanted
 from codegen.intervals.numbers import Array, Reach, reach, select
 
 
@@ -152,6 +153,9 @@ def _choose(condition: Truth, a: Single, b: Single) -> Single:
 
 
 def _hull(t: Array, f: Array, a: N, b: N) -> tuple[Array, Array]:
+    if isinstance(a, Range) and wanted(len(t)) and not (a.is_point and b.is_point):
+        found = kernels().choose(t, f, *ends(a.low, a.high), *ends(b.low, b.high), len(t))
+        return cast(tuple[Array, Array], found)
     both = t & f
     low = select(t, a.low, b.low)
     if not both.any():

@@ -11,6 +11,8 @@ from codegen.intervals.numbers import Array
 from codegen.intervals.values import Range, Whole
 
 _MODULUS = 2**32
+_WITHIN = ("&", "|", "^", ">>")
+"""Operators whose exact result is in the type where the operands are."""
 Ends = tuple[Array, Array]
 
 
@@ -18,6 +20,8 @@ def binary(op: str, a: Whole, b: Whole) -> Whole:
     """An operator on two integers."""
     if a.is_point and b.is_point:
         low = _exact(op, a.low, b.low)
+        if op in _WITHIN:
+            return Whole(low, low, a.is_signed, first(a.cause, b.cause))
         high = low
     else:
         low, high = _HULLS[op](a, b)
