@@ -10,12 +10,10 @@ hardware by the wall.
 
 from __future__ import annotations
 
-import os
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,6 +26,7 @@ from codegen.execute import Words, flatten
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32, I32, Array, Scalar, Type, Vector, leaves
 from codegen.library import Library
+from codegen.thread_times import cpu_seconds, threads
 
 SOFTWARE = ("llvmpipe", "lavapipe", "softpipe", "swiftshader", "pocl", "portable computing", "pthread", "cpu")
 CHAINS = 4
@@ -126,26 +125,17 @@ def _working_clock(one: Any) -> Callable[[], float]:
 
     Threads that wait, whose share changes with whatever else the machine does, do not count.
     """
-    folder = Path("/proc/self/task")
-    threads = [int(name) for name in os.listdir(folder)] if folder.is_dir() else []
     one.launch()
-    before, whole = {t: _read(t) for t in threads}, time.process_time()
+    before, whole = {t: cpu_seconds(t) for t in threads()}, time.process_time()
     for _ in range(3):
         one.launch()
     whole = time.process_time() - whole
-    spent = {t: _read(t) - before[t] for t in threads if t != threading.main_thread().native_id}
+    computing = before.keys() - {threading.main_thread().native_id}
+    spent = {t: cpu_seconds(t) - before[t] for t in computing}
     working = [t for t, seconds in spent.items() if seconds >= SHARE * whole]
     if not working:
         return time.process_time
-    return lambda: sum(map(_read, working))
-
-
-def _read(thread: int) -> float:
-    """CPU seconds of a thread by Linux's number of its clock; 0 for one that has ended."""
-    try:
-        return time.clock_gettime((~thread << 3) | 6)
-    except OSError:
-        return 0.0
+    return lambda: sum(map(cpu_seconds, working))
 
 
 def _steps(runtime: Any, text: str, words: Words) -> int:

@@ -7,11 +7,11 @@ launch.
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
+
+from codegen.thread_times import cpu_seconds, threads
 
 Clock = Callable[[], float]
 
@@ -30,26 +30,11 @@ def driver_clock(launch: Callable[[], None]) -> tuple[Clock, str]:
     returns  the CPU time of the computing thread, or of the process where no one thread computes
     """
     for _ in range(TRIES):
-        threads = _threads()
-        before, start = {t: _read(t) for t in threads}, time.process_time()
+        before, start = {t: cpu_seconds(t) for t in threads()}, time.process_time()
         launch()
         whole = time.process_time() - start
-        spent = {t: _read(t) - before[t] for t in threads}
+        spent = {t: cpu_seconds(t) - before[t] for t in before}
         busiest = max(spent, key=lambda t: spent[t], default=0)
         if spent and spent[busiest] >= SHARE * whole:
-            return partial(_read, busiest), "CPU time of the driver's computing thread"
+            return partial(cpu_seconds, busiest), "CPU time of the driver's computing thread"
     return time.process_time, "CPU time of the process"
-
-
-def _threads() -> list[int]:
-    """The process's threads, where the system tells."""
-    folder = Path("/proc/self/task")
-    return [int(name) for name in os.listdir(folder)] if folder.is_dir() else []
-
-
-def _read(thread: int) -> float:
-    """CPU seconds of a thread by Linux's number of its clock; 0 for a thread that has ended."""
-    try:
-        return time.clock_gettime((~thread << 3) | 6)
-    except OSError:
-        return 0.0

@@ -99,6 +99,18 @@ class Channel:
         self._stream.flush()
 
 
+def serve(answer: Callable[[str, Say], dict[str, Any]]) -> None:
+    """Run the job on standard input.
+
+    answer  (the job as JSON, what says an event) -> the result
+    """
+    channel = Channel()
+    try:
+        channel.say("result", data=answer(sys.stdin.read(), channel.say))
+    except TargetUnavailable as e:
+        channel.say("unavailable", reason=str(e))
+
+
 def opened_driver(target: str, name: str) -> TimedRuntime:
     """The runtime of a driver by name, or of the one that the target prefers; raises TargetUnavailable."""
     return open_driver(driver(name)) if name else open_runtime(target)
@@ -179,15 +191,5 @@ def measured(
     return entries, group_data(group.base.name, speeds)
 
 
-def main() -> None:
-    """Run the job on standard input."""
-    channel = Channel()
-    job = Job.from_json(sys.stdin.read())
-    try:
-        channel.say("result", data=measure(job, channel.say))
-    except TargetUnavailable as e:
-        channel.say("unavailable", reason=str(e))
-
-
 if __name__ == "__main__":
-    main()
+    serve(lambda text, say: measure(Job.from_json(text), say))

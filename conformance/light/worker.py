@@ -6,7 +6,6 @@ The job comes as JSON on standard input: the plan and the quadratures, which are
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -17,11 +16,10 @@ import numpy.typing as npt
 from codegen.library import Library, load_library
 from conformance.bench.record import described_device
 from conformance.bench.timing import QUICK, Bench
-from conformance.bench.worker import Channel, Say, opened_driver
+from conformance.bench.worker import Say, opened_driver, serve
 from conformance.light import emitted, modelled
 from conformance.light.lobes import Lobe
-from conformance.light.plan import Plan
-from targets import TargetUnavailable
+from conformance.light.plan import SCHEMA, Plan
 
 Truths = Mapping[str, Mapping[str, npt.NDArray[np.float64]]]
 """Quadratures (views, 3) by map and lobe."""
@@ -69,20 +67,21 @@ def measure(job: Job, library: Library, say: Say) -> dict[str, Any]:
     bench = Bench(library, runtime, replace(QUICK, rounds=chosen.rounds, most=chosen.rounds))
     maps = {name: emitted.texture(here) for name, here in modelled.environments(chosen).items()}
     say("done", what="maps")
-    errors: dict[str, dict[str, Any]] = {name: {} for name in maps}
-    times: dict[str, Any] = {}
+    errors: list[dict[str, Any]] = []
+    times: list[dict[str, Any]] = []
     for lobe in chosen.lobes:
         label = str(lobe)
         names = {e: emitted.function_of(e, lobe) for e in emitted.BY_LOBE}
         for m, env in maps.items():
-            errors[m][label] = {
-                e: asdict(emitted.errors(library, runtime, e, chosen, lobe, env, job.truths[m][label]))
-                for e in names
-            }
+            for e in names:
+                curve = emitted.errors(library, runtime, e, chosen, lobe, env, job.truths[m][label])
+                errors.append({"map": m, "lobe": label, "estimator": e, **asdict(curve)})
         first = next(iter(maps.values()))
-        times[label] = {e: t.as_data() for e, t in emitted.times(bench, names, chosen, lobe, first).items()}
+        for e, t in emitted.times(bench, names, chosen, lobe, first).items():
+            times.append({"lobe": label, "estimator": e, **t.as_data()})
         say("done", what=label)
     return {
+        "schema": SCHEMA,
         "device": {"driver_name": job.driver, **described_device(runtime.device)},
         "clock": bench.clock_name,
         "rounds": chosen.rounds,
@@ -92,15 +91,5 @@ def measure(job: Job, library: Library, say: Say) -> dict[str, Any]:
     }
 
 
-def main() -> None:
-    """Run the job on standard input."""
-    channel = Channel()
-    job = Job.from_json(sys.stdin.read())
-    try:
-        channel.say("result", data=measure(job, load_library(), channel.say))
-    except TargetUnavailable as e:
-        channel.say("unavailable", reason=str(e))
-
-
 if __name__ == "__main__":
-    main()
+    serve(lambda text, say: measure(Job.from_json(text), load_library(), say))
