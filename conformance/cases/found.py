@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from conformance.cases import domains
-from conformance.cases.parameters import FRAME_FIELDS, Leaf, leaves, nested
+from conformance.cases.parameters import FRAME_FIELDS, Leaf, leaves, nested, value_of
 
 FOLDER = Path(__file__).parent / "worst"
 COLUMNS = ("function", "target", "driver", "measure", "domain", "error", "inputs")
@@ -46,12 +46,7 @@ def words(function: Any, inputs: Mapping[str, Any], lane: int = 0) -> str:
     """One lane of inputs as text, words in hex."""
     parts = []
     for leaf in leaves(function.parameters):
-        value: Any = inputs
-        for name in leaf.path:
-            value = value[name]
-        if leaf.type == "Frame":
-            value = np.concatenate([value[name] for name in FRAME_FIELDS], axis=1)
-        lane_values = np.atleast_1d(np.asarray(value)[lane])
+        lane_values = np.atleast_1d(np.asarray(value_of(leaf, inputs))[lane])
         if lane_values.dtype == np.bool_:
             lane_values = lane_values.astype(np.uint32)
         bits = np.ascontiguousarray(lane_values).view(np.uint32)
@@ -112,13 +107,8 @@ def worst(function: Any) -> dict[str, Any]:
 
 def inside_domains(function: Any, inputs: Mapping[str, Any]) -> npt.NDArray[np.bool_]:
     """Which lanes lie in the domains of all parameters."""
-    masks = []
-    for leaf in leaves(function.parameters):
-        value: Any = inputs
-        for name in leaf.path:
-            value = value[name]
-        if leaf.type != "Frame":
-            masks.append(domains.contains(leaf.domain, value))
+    free = [leaf for leaf in leaves(function.parameters) if leaf.type != "Frame"]
+    masks = [domains.contains(leaf.domain, value_of(leaf, inputs)) for leaf in free]
     lanes = len(next(iter(_arrays(inputs))))
     return np.asarray(np.logical_and.reduce(masks) if masks else np.ones(lanes), np.bool_)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -49,6 +49,14 @@ def leaves(parameters: Iterable[Any], path: tuple[str, ...] = ()) -> list[Leaf]:
         else:
             found += leaves(fields, place)
     return found
+
+
+def value_of(leaf: Leaf, inputs: Mapping[str, Any]) -> Any:
+    """What inputs hold of a leaf; a frame's three vectors side by side, (N, 9)."""
+    value: Any = inputs
+    for name in leaf.path:
+        value = value[name]
+    return np.concatenate([value[name] for name in FRAME_FIELDS], axis=1) if leaf.type == "Frame" else value
 
 
 def nested(values: dict[tuple[str, ...], Any]) -> dict[str, Any]:

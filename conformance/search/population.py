@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from conformance.cases import background, domains
-from conformance.cases.parameters import FRAME_FIELDS, Leaf, leaves, nested
+from conformance.cases.parameters import FRAME_FIELDS, Leaf, leaves, nested, value_of
 from conformance.cases.stream import norm
 
 Array = npt.NDArray[Any]
@@ -27,15 +27,7 @@ of 8e6 vectors. A search that may go further finds nothing but the error of the 
 
 def pack(found: Iterable[Leaf], inputs: Mapping[str, Any]) -> Population:
     """The population of these inputs."""
-    packed: Population = {}
-    for leaf in found:
-        value: Any = inputs
-        for name in leaf.path:
-            value = value[name]
-        if leaf.type == "Frame":
-            value = np.concatenate([value[name] for name in FRAME_FIELDS], axis=1)
-        packed[leaf.path] = np.array(value)
-    return packed
+    return {leaf.path: np.array(value_of(leaf, inputs)) for leaf in found}
 
 
 def unpack(found: Iterable[Leaf], population: Population) -> dict[str, Any]:

@@ -50,26 +50,6 @@ def main(
     record: bool,
 ) -> None:
     """Sweep and say what was found; exit status 1 where a bound is missed, 2 for bad usage."""
-    try:
-        run(names, targets, stride, words, only_short, workers, scheduler, state, fresh, record)
-    except UserError as e:
-        click.echo(f"error: {e}", err=True)
-        raise SystemExit(2) from None
-
-
-def run(
-    names: tuple[str, ...],
-    targets: tuple[str, ...],
-    stride: int,
-    words: str | None,
-    only_short: bool,
-    workers: int,
-    scheduler: str | None,
-    state: Path,
-    fresh: bool,
-    record: bool,
-) -> None:
-    """What the options ask for."""
     library = load_library()
     swept = sweepable(library)
     for name in names:
@@ -148,4 +128,8 @@ def told(entry: Entry) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except UserError as e:
+        click.echo(f"error: {e}", err=True)
+        sys.exit(2)
