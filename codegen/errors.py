@@ -48,3 +48,19 @@ def nearest(name: str, valid: Iterable[str]) -> str:
 def unknown(kind: str, name: str, valid: Iterable[str]) -> UserError:
     """The error for a name that is not among the valid ones."""
     return UserError(f'unknown {kind} "{name}"{nearest(name, valid)}')
+
+
+def check_names(
+    given: Iterable[str], allowed: Iterable[str], needed: Iterable[str], odd: str, lacking: str
+) -> None:
+    """Refuse names that are not allowed, and needed names that are not given.
+
+    odd, lacking  how the two sentences begin: 'f has no parameter', 'f needs'
+    """
+    given, allowed = list(given), list(allowed)
+    for name in given:
+        if name not in allowed:
+            raise UserError(f'{odd} "{name}"{nearest(name, allowed)}')
+    missing = [name for name in needed if name not in given]
+    if missing:
+        raise UserError(f"{lacking} {', '.join(missing)}")

@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 import numpy.typing as npt
 
-from codegen.errors import UserError, nearest, unknown
+from codegen.errors import UserError, check_names, unknown
 from codegen.evaluate.textures import as_map, lookup_in, size_in, texture_map
 from codegen.ir.types import BOOL, F16, F32, I32, TEXTURE, U32, Scalar, Struct, Type, Vector
 from codegen.ir.types import Array as ArrayType
@@ -99,12 +99,7 @@ def convert_inputs(
 
     Raises UserError for missing or unknown names and for shapes that do not fit.
     """
-    for name in inputs:
-        if name not in parameters:
-            raise UserError(f'{function} has no parameter "{name}"{nearest(name, parameters)}')
-    missing = [name for name in parameters if name not in inputs]
-    if missing:
-        raise UserError(f"{function} needs {', '.join(missing)}")
+    check_names(inputs, parameters, parameters, f"{function} has no parameter", f"{function} needs")
     arrays = {n: _convert(f"{function}: {n}", t, inputs[n], arithmetic) for n, t in parameters.items()}
     lengths = {len(a) for value in arrays.values() for a in _leaf_arrays(value)}
     counts = lengths - {1}
@@ -123,12 +118,7 @@ def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Val
         if not isinstance(given, Mapping):
             raise UserError(f"{where} is a {type_.name}: give its fields")
         fields = {f.name: f.type for f in type_.fields}
-        for name in given:
-            if name not in fields:
-                raise UserError(f'{where} has no field "{name}"{nearest(name, fields)}')
-        missing = [name for name in fields if name not in given]
-        if missing:
-            raise UserError(f"{where} lacks {', '.join(missing)}")
+        check_names(given, fields, fields, f"{where} has no field", f"{where} lacks")
         return {n: _convert(f"{where}.{n}", t, given[n], arithmetic) for n, t in fields.items()}
     element = type_.element if isinstance(type_, Vector) else type_
     assert isinstance(element, Scalar)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, cast
 
-from codegen.errors import UserError, nearest, unknown
+from codegen.errors import UserError, check_names, nearest, unknown
 from codegen.intervals.accuracy import (
     Absolute,
     Accuracy,
@@ -96,12 +96,7 @@ def read_table(name: str, shown: str, text: str) -> Table:
         if not isinstance(data[key], bool):
             raise UserError(f"{shown}: {key} is true or false")
     expected = [*OPERATORS, *BUILTINS, CAST]
-    for operation in entries:
-        if operation not in expected:
-            raise UserError(f'{shown}: unknown operation "{operation}"{nearest(operation, expected)}')
-    missing = [operation for operation in expected if operation not in entries]
-    if missing:
-        raise UserError(f"{shown}: no row for {', '.join(missing)}")
+    check_names(entries, expected, expected, f"{shown}: unknown operation", f"{shown}: no row for")
     rows = {operation: _row(f"{shown}: {operation}", operation, entries[operation]) for operation in expected}
     return Table(
         name,
@@ -116,12 +111,7 @@ def read_table(name: str, shown: str, text: str) -> Table:
 
 
 def _keys(where: str, entry: Mapping[str, Any], allowed: tuple[str, ...], needed: tuple[str, ...]) -> None:
-    for key in entry:
-        if key not in allowed:
-            raise UserError(f'{where}: unknown key "{key}"{nearest(key, allowed)}')
-    missing = [key for key in needed if key not in entry]
-    if missing:
-        raise UserError(f"{where}: lacks {', '.join(missing)}")
+    check_names(entry, allowed, needed, f"{where}: unknown key", f"{where}: lacks")
 
 
 # kind -> (keys it takes, keys it needs, value from the entry)
