@@ -57,7 +57,7 @@ def evaluate(
         arrays, count = memory.inputs(function, inputs, chosen)
     arrays = with_edges(function, arrays)
     with np.errstate(all="ignore"):  # lanes that a branch does not take may overflow or divide by zero
-        return _Frame(find, chosen, function, arrays, count, memory).run()
+        return Frame(find, chosen, function, arrays, count, memory).run()
 
 
 def with_edges(function: ir.Function, arrays: dict[str, Value]) -> dict[str, Value]:
@@ -85,7 +85,7 @@ def _alike(kind: np.dtype[Any], value: int, count: int) -> Array:
     return np.broadcast_to(kind.type(value), (count,))
 
 
-class _Frame:
+class Frame:
     """One call: its locals, which lanes still run, and what has been returned so far."""
 
     def __init__(
@@ -239,10 +239,14 @@ class _Frame:
     def call(self, e: ir.Call) -> Value:
         function = self.find(e.function)
         inputs = {p.name: self.whole(a) for p, a in zip(function.parameters, e.args, strict=True)}
-        frame = _Frame(self.find, self.arithmetic, function, inputs, self.count, self.memory)
+        frame = self.inner(function, inputs)
         if self.memory is None:
             return frame.run()
         return self.memory.value(function.name, list(inputs.values()), frame.run)
+
+    def inner(self, function: ir.Function, inputs: dict[str, Value]) -> Frame:
+        """The frame of a call."""
+        return Frame(self.find, self.arithmetic, function, inputs, self.count, self.memory)
 
     def construct(self, type_: Type, parts: list[Value]) -> Value:
         if isinstance(type_, Struct):

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from codegen.evaluate.arrays import Value, arithmetic, convert_inputs
-from codegen.evaluate.interpreter import _Frame
+from codegen.evaluate.interpreter import Frame
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32
 from codegen.library import Library
@@ -33,7 +33,7 @@ class Term:
     high: float
 
 
-class _Recorder(_Frame):
+class _Recorder(Frame):
     """An evaluation that notes the extremes of every scalar."""
 
     seen: dict[int, tuple[float, float]]

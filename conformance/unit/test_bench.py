@@ -6,6 +6,7 @@ Plan. No test asserts a speed.
   measuring   a tiny case gives positive times and a ratio of 1 for the base; the self-checks are numbers
   statistics  quartiles and net ratios of synthetic rounds with a common drift; a lost reference gives none
   inputs      groups are complete; a bound cuts the domains that it names; inputs lie in all members' domains
+              and lead to no number below the normal ones, which would take a hundred times as long
   records     rounding, names of files, the README's table and the cost of `vair list`, from a small result
   choice      errors over the base's whole domain know of narrower members and of declared bounds
 Not covered here: when rounds stop (test_bench_stopping.py), the report and its command (test_report.py).
@@ -24,7 +25,7 @@ from codegen.costs import SCHEMA, costs, recorded
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.evaluate.arrays import arithmetic, convert_inputs
-from codegen.execute import Words, flatten
+from codegen.execute import Words, flatten, unflatten
 from codegen.ir.domains import Interval
 from codegen.ir.types import leaves
 from codegen.library import Library, load_library
@@ -36,6 +37,7 @@ from conformance.bench.emission import emit
 from conformance.bench.figures import Figure
 from conformance.bench.inputs import declared, groups, lanes, within
 from conformance.bench.kernels import FLAT, LATENCY, THROUGHPUT, Mode
+from conformance.bench.normal import normal_lanes
 from conformance.bench.ratios import net_ratio, spread, straightness
 from conformance.bench.record import (
     as_json,
@@ -182,6 +184,24 @@ def test_inputs_suit_all_members(library: Library) -> None:
         assert words.shape == (slots, LANES), group.base.name
         drawn = cases.draw(declared(library, group)[0], cases.UNIFORM, LANES, 1)
         assert evaluate(library, group.base.name, drawn) is not None
+
+
+def test_a_tiny_number_on_the_way_is_seen(library: Library) -> None:
+    q = np.array([0.0, 1e-25, 1e-3, 0.9], np.float32)  # (q / 2)^2 is 2.5e-51 at the second
+    assert normal_lanes(library, "log_one_minus", {"q": q}).tolist() == [True, False, True, True]
+
+
+@pytest.mark.parametrize("name", ["log_one_minus", "fakefur_shade"])
+def test_timing_inputs_give_normal_numbers(library: Library, name: str) -> None:
+    [group] = groups(library, [name])
+    words, values = lanes(library, group, 256), []
+    for p in group.base.parameters:
+        count = len(leaves(p.type))
+        values.append(unflatten(p.type, words[:count]))
+        words = words[count:]
+    for f in group.members:
+        given = dict(zip((p.name for p in f.parameters), values, strict=True))
+        assert normal_lanes(library, f.name, given).all()
 
 
 def test_recorded_results_reach_the_readme_and_the_list(library: Library, tmp_path: Path) -> None:
