@@ -50,6 +50,7 @@ class ExprPrinter:
                 return self.conditional(e)
 
     def builtin(self, e: ir.Builtin) -> str:
+        """A built-in under its name in this dialect."""
         op = BUILTINS[e.op]
         if self.dialect.target in op.text and isinstance(e.args[0], ir.Var):
             return op.text[self.dialect.target].format(e.args[0].name)
@@ -79,6 +80,7 @@ class ExprPrinter:
         return level(e)
 
     def arguments(self, args: tuple[ir.Expr, ...]) -> str:
+        """Arguments of a call, between its parentheses; a texture may be several."""
         texts = [
             ", ".join(part for part, _ in self.texture(a.name))
             if isinstance(a, ir.Var) and a.type == TEXTURE
@@ -93,6 +95,7 @@ class ExprPrinter:
         return ", ".join(texts)
 
     def binary(self, e: ir.Binary) -> str:
+        """An operation with the parentheses that keep its tree."""
         at = level(e)
         left, right = self.bare(e.left, LEFT[at]), self.bare(e.right, RIGHT[at] | self._right_casts(e.right))
         return f"{left} {_SPELLING.get(e.op, e.op)} {right}"
@@ -103,6 +106,7 @@ class ExprPrinter:
         return frozenset() if is_sign else frozenset({"unary"})
 
     def construct(self, e: ir.Construct) -> str:
+        """A vector, struct or array of its parts."""
         name = self.type_name(e.type)
         if isinstance(e.type, Struct) and self.dialect.structs == "compound":
             return f"({name}){{{self.arguments(e.args)}}}"
@@ -120,6 +124,7 @@ class ExprPrinter:
         return self.dialect.types.get(type_.name, type_.name)
 
     def convert(self, e: ir.Convert) -> str:
+        """A conversion between types of numbers."""
         name = self.dialect.types[e.type.name]
         if self.dialect.conversions == "cast":
             if isinstance(e.type, Vector):
@@ -128,6 +133,7 @@ class ExprPrinter:
         return f"{name}({self.show(e.operand)})"
 
     def conditional(self, e: ir.Select) -> str:
+        """A choice between two values; WGSL evaluates both, which no value here can tell."""
         if self.dialect.conditional == "select":
             return f"select({self.arguments((e.if_false, e.if_true, e.condition))})"
         condition = self.bare(e.condition, _CONDITIONAL_PARTS)

@@ -46,6 +46,7 @@ class StmtPrinter:
         return [f"{type_} {name}" for name, type_ in self.expr.texture(p.name)]
 
     def let(self, s: ir.Let) -> str:
+        """The declaration of a local, with its value."""
         value = self.expr.show(s.value)
         if isinstance(s.value.type, Array):
             return self.array(s, value)
@@ -86,6 +87,7 @@ class StmtPrinter:
         return lines
 
     def branch(self, s: ir.If, indent: str, lead: str = "") -> list[str]:
+        """The lines of an if; an if alone in the other side becomes "else if"."""
         head = wrap.code(f"{lead}if ({self.expr.show(s.condition)}) {{", indent)
         lines = [*head, *self.block(s.then, indent + _STEP)]
         if len(s.orelse) == 1 and isinstance(s.orelse[0], ir.If):
@@ -95,6 +97,7 @@ class StmtPrinter:
         return [*lines, indent + "}"]
 
     def loop_head(self, s: ir.For) -> str:
+        """The line that opens a loop."""
         start, stop = (self.expr.show(ir.Const(s.index_type, bound)) for bound in (s.start, s.stop))
         if not isinstance(s.limit, ir.Const | None):
             stop = self.expr.show(ir.Builtin(s.index_type, "min", (s.limit, ir.Const(s.index_type, s.stop))))

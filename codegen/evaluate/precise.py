@@ -25,6 +25,8 @@ def _divide(a: Any, b: Any) -> Any:
 
 
 def namespace() -> SimpleNamespace:
+    """The op registry's names over object arrays of mpf, as precise as mpmath is set when they are called."""
+
     def each(function: Callable[..., Any], arity: int = 1) -> Callable[..., Any]:
         found: Callable[..., Any] = np.frompyfunc(function, arity, 1)
         return found

@@ -34,7 +34,7 @@ def lower_body(
     lowered = lowering.block(body)
     if not _returns(lowered):
         raise file.error(node, f'not every path of "{node.name}" returns a value')
-    return _mark_mutable(lowered)
+    return mark_mutable(lowered)
 
 
 class StatementLowering:
@@ -65,9 +65,11 @@ class StatementLowering:
         return tuple(lowered)
 
     def expression(self, node: ast.expr, expected: Type | None = None) -> ir.Expr:
+        """The typed expression, names looked up in the scope as it is here."""
         return ExpressionLowering(self.resolver, self.file, self.scope, self.ended).lower(node, expected)
 
     def statement(self, node: ast.stmt) -> ir.Stmt:
+        """One statement; raises SourceError for what the subset of Python leaves out."""
         match node:
             case ast.Return(value=ast.expr() as value):
                 return ir.Return(self.expression(value, self.returns), node.lineno)
@@ -95,6 +97,7 @@ class StatementLowering:
                 raise self.file.error(node, f"{describe(node)} is outside the shader subset of Python")
 
     def assignment(self, node: ast.stmt, name: str, value: ast.expr) -> ir.Stmt:
+        """A new local, or another value of the same type for one."""
         known = self.scope.get(name)
         if name in self.parameters:
             raise self.file.error(node, f'parameter "{name}" is read only; use another name')
@@ -114,6 +117,7 @@ class StatementLowering:
         return ir.Let(name, e, False, node.lineno)
 
     def loop(self, node: ast.For) -> ir.Stmt:
+        """A loop over range() with constant bounds, which a parameter may end early."""
         limit: ir.Expr | None = None
         match node:
             case ast.For(
@@ -169,7 +173,8 @@ def _returns(body: tuple[ir.Stmt, ...]) -> bool:
     )
 
 
-def _mark_mutable(body: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
+def mark_mutable(body: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
+    """The same statements; locals are mutable where some statement assigns them again, and only there."""
     assigned = {s.name for s in ir.statements(body) if isinstance(s, ir.Assign)}
 
     def mark(part: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:

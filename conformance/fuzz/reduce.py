@@ -10,6 +10,7 @@ import numpy as np
 
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
+from codegen.frontend.statements import mark_mutable
 from codegen.ir import nodes as ir
 from codegen.ir.verify import MalformedIRError, verify_selection
 from codegen.library import Library
@@ -77,24 +78,8 @@ def _statements(functions: tuple[ir.Function, ...]) -> int:
 
 
 def settled(function: ir.Function) -> ir.Function:
-    """Locals that no statement assigns again are marked so, as the front end does."""
-    assigned = {s.name for s in ir.statements(function.body) if isinstance(s, ir.Assign)}
-
-    def mark(body: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
-        marked: list[ir.Stmt] = []
-        for s in body:
-            match s:
-                case ir.Let():
-                    marked.append(replace(s, mutable=s.name in assigned))
-                case ir.If():
-                    marked.append(replace(s, then=mark(s.then), orelse=mark(s.orelse)))
-                case ir.For():
-                    marked.append(replace(s, body=mark(s.body)))
-                case _:
-                    marked.append(s)
-        return tuple(marked)
-
-    return replace(function, body=mark(function.body))
+    """The function with its locals marked mutable as the front end does."""
+    return replace(function, body=mark_mutable(function.body))
 
 
 def wrong_value(inputs: Mapping[str, Any], lane: int, runtime: Runtime | None) -> Fails:
