@@ -125,14 +125,15 @@ def set_up_fur(library: Library, path: Path, *, pictured: bool = True, **changes
     return FurStudio(library, scene, picture, scene.fur, shading, bound.values, mesh)
 
 
-def open_drawing(studio: FurStudio, target: str) -> Drawing:
+def open_drawing(studio: FurStudio, target: str, dialect: str | None = None) -> Drawing:
     """The scene's draw calls on a target's device.
 
-    errors  UserError for targets that draw no fur, and without a driver
+    dialect  of the stages; the target's first one in which fur is written if None
+    errors   UserError for targets that draw no fur, and without a driver
     """
     if target not in DIALECTS:
         raise UserError(f"target {target} draws no fur; {' and '.join(DIALECTS)} do")
-    texts = stage_texts(studio.library, studio.shading, target, DIALECTS[target][0])
+    texts = stage_texts(studio.library, studio.shading, target, dialect or DIALECTS[target][0])
     runtime = open_runtime(target)
     if target == "glsl":
         from targets.glsl.raster import GlslScene

@@ -1,7 +1,7 @@
 """Fur is drawn alike by OpenGL and WebGPU, and each piece of it does what it is there for.
 
 Plan.
-  agreement  both example scenes, small, on both targets
+  agreement  both example scenes, small, on both targets; GLSL 3.30 and ES 3.00 on one driver
   pieces     on a ball: shells reach beyond the base, fins show at the silhouette only, the shadow darkens
              towards the skin, bald skin is the base, another seed is another coat
   camera     the target is in the middle, near and far end of the scene are the ends of the depth range
@@ -21,6 +21,7 @@ from PIL import Image
 
 from codegen.cli import run
 from codegen.errors import UserError
+from codegen.fur.stages import DIALECTS
 from codegen.library import load_library
 from conformance.picture.fur_frame import view_projection
 from conformance.picture.fur_render import FurStudio, open_drawing, set_up_fur
@@ -62,6 +63,16 @@ def test_opengl_and_webgpu_draw_the_same_fur(name: str) -> None:
     steps = steps_apart(gl[..., :3].astype(np.float64), gpu[..., :3].astype(np.float64))
     assert steps.mean() < tolerance("fur_mean_steps")
     assert (steps.max(axis=2) < tolerance("fur_pixel_steps")).mean() > tolerance("fur_pixel_share")
+
+
+def test_the_dialects_of_glsl_draw_the_same_fur(ball: FurStudio) -> None:
+    pictures = []
+    for dialect in DIALECTS["glsl"]:
+        drawing = open_drawing(ball, "glsl", dialect)
+        pictures.append(drawing.draw(ball.block.pack(ball.values("glsl"))))
+        drawing.release()
+    assert len(pictures) == 2 and pictures[0].max() > 0.1
+    assert np.array_equal(pictures[0], pictures[1])
 
 
 @pytest.fixture(scope="module")
