@@ -44,6 +44,11 @@ def env_radiance(env: Map, w: Array, lod: Array) -> Array:
     return out
 
 
+def env_prefiltered(env: Map, w: Array) -> Array:
+    """One bilinear lookup in a map that has been convolved with a lobe."""
+    return _level(env, unit(w), 0)
+
+
 def _level(env: Map, w: Array, k: int) -> Array:
     """One level; the largest in which one texel is as wide as the disc is the last."""
     texel = 2.0**k / env[0].shape[0]
@@ -187,5 +192,6 @@ ESTIMATORS = {"grid": None, "monte_carlo": _unfiltered, "filtered": _filtered, "
 
 REFERENCES: dict[str, Reference] = {
     "env_radiance": env_radiance,
+    "env_prefiltered": env_prefiltered,
     **{f"env_{name}_{lobe}": _of(lobe, find) for name, find in ESTIMATORS.items() for lobe in LOBES},
 }
