@@ -9,6 +9,7 @@ adds its own.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -36,17 +37,18 @@ class Row:
 
     argument: str
     exponent: str
-    base: Callable[[Values, ir.Expr, float], ir.Expr]
+    base: Callable[[Values, ir.Expr, int], ir.Expr]
     roundings: int
 
 
-def _one_minus(values: Values, q: ir.Expr, least: float) -> ir.Expr:
+def _one_minus(values: Values, q: ir.Expr, power: int) -> ir.Expr:
     left = values.binary("-", values.number(1.0, F32), q)
-    return values.build(ir.Builtin(F32, "max", (left, values.number(least, F32))))
+    return values.build(ir.Builtin(F32, "max", (left, values.number(least_base(power), F32))))
 
 
-def _not_negative(values: Values, x: ir.Expr, least: float) -> ir.Expr:
-    return values.build(ir.Builtin(F32, "max", (x, values.number(least, F32))))
+def _between(values: Values, x: ir.Expr, power: int) -> ir.Expr:
+    ends = (values.number(end, F32) for end in (least_base(power), largest_base(power)))
+    return values.build(ir.Builtin(F32, "clamp", (x, *ends)))
 
 
 def least_base(power: int) -> float:
@@ -57,6 +59,11 @@ def least_base(power: int) -> float:
     return float(np.float32(2.0 ** (-100.0 / power))) if power > 1 else 0.0
 
 
+def largest_base(power: int) -> float:
+    """The largest base of a power: there the power is e^80, where safe_pow saturates, and stays finite."""
+    return float(np.float32(math.exp(80.0 / power)))
+
+
 ROWS: Mapping[str, Row] = {
     "pow_one_minus": Row("q", "p", _one_minus, 1),
     "pow_one_minus_from4": Row("q", "p", _one_minus, 1),
@@ -64,9 +71,9 @@ ROWS: Mapping[str, Row] = {
     "pow_one_minus_sq16": Row("q", "p", _one_minus, 1),
     "pow_one_minus_from8": Row("q", "p", _one_minus, 1),
     "pow_one_minus_cubic8": Row("q", "p", _one_minus, 1),
-    "safe_pow": Row("x", "y", _not_negative, 0),
-    "safe_pow_exp2": Row("x", "y", _not_negative, 0),
-    "safe_pow_near_one": Row("x", "y", _not_negative, 0),
+    "safe_pow": Row("x", "y", _between, 0),
+    "safe_pow_exp2": Row("x", "y", _between, 0),
+    "safe_pow_near_one": Row("x", "y", _between, 0),
 }
 
 
@@ -90,7 +97,7 @@ def whole_exponents(
         power = float(exponent.value)
         if power != int(power) or not 1 <= power <= largest:
             return None
-        made = _power(values, row.base(values, of, least_base(int(power))), int(power))
+        made = _power(values, row.base(values, of, int(power)), int(power))
         values.note(
             NAME,
             f"{function.name}({values.show(of)}, {power:g}) -> {multiplications(int(power))} multiplications",

@@ -31,7 +31,10 @@ DEEPEST = 6
 
 Monomial = tuple[int, ...]
 Polynomial = dict[Monomial, Fraction]
-"""Products of values (their ids, sorted) with their exact factors."""
+"""Products of values (their numbers in order of first sight, sorted) with their exact factors.
+
+Not their ids: products are rebuilt in this order, and text must not depend on where values lie in memory.
+"""
 
 
 def cancellation() -> Rule:
@@ -75,10 +78,11 @@ class _Sum:
 
 
 class _Expansion:
-    """Multiplies out values, each once per depth; `atoms` keeps what products are made of."""
+    """Multiplies out values, each once per depth; `atoms` keeps what products are made of, by number."""
 
     def __init__(self) -> None:
         self.atoms: dict[int, ir.Expr] = {}
+        self._numbers: dict[int, int] = {}
         self._known: dict[tuple[int, int], tuple[_Sum | None, ir.Expr]] = {}
 
     def of(self, e: ir.Expr, depth: int) -> _Sum | None:
@@ -104,8 +108,9 @@ class _Expansion:
         return self.atom(e)
 
     def atom(self, e: ir.Expr) -> _Sum:
-        self.atoms[id(e)] = e
-        return _Sum({(id(e),): Fraction(1)})
+        number = self._numbers.setdefault(id(e), len(self._numbers))
+        self.atoms[number] = e
+        return _Sum({(number,): Fraction(1)})
 
 
 def _added(a: _Sum | None, b: _Sum | None, op: str) -> _Sum | None:

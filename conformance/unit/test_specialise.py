@@ -18,10 +18,13 @@ from codegen.emit.stmt import StmtPrinter
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.ir import nodes as ir
+from codegen.ir.types import F32
 from codegen.ir.verify import verify
 from codegen.library import Library, load_library
 from codegen.passes.operations import operations
 from codegen.passes.specialise import Specialised, specialise
+from codegen.passes.sums import cancellation
+from codegen.passes.values import Values
 from conformance.unit.support.dialects import ONE_PER_TARGET, dialect_id, validate
 from conformance.unit.support.sources import library_of
 from conformance.unit.support.trees import no_function
@@ -307,3 +310,17 @@ def test_added_functions_do_not_reach_the_library_they_were_added_to() -> None:
     assert "other" not in LIBRARY.functions
     with pytest.raises(UserError, match='unknown function "other"'):
         LIBRARY.function("other")
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_products_are_rebuilt_in_the_order_of_the_source_wherever_values_lie(reverse: bool) -> None:
+    """Ids order values by their place in memory, which differs from run to run."""
+    places = sorted((ir.Var(F32, "?") for _ in range(4)), key=id, reverse=reverse)
+    for place, name in zip(places, "abcd", strict=True):
+        object.__setattr__(place, "name", name)
+    values = Values(rules=(cancellation(),))
+    a, b, c, d = map(values.intern, places)
+    product = values.binary("*", values.binary("*", c, d), a)
+    doubled = values.binary("*", values.number(2.0, F32), values.binary("+", product, b))
+    left = values.binary("-", doubled, values.binary("*", values.number(2.0, F32), b))
+    assert values.show(left) == "((2 * c) * d) * a"

@@ -16,6 +16,7 @@ from codegen.backends import dialect
 from codegen.emit.stmt import StmtPrinter
 from codegen.evaluate import evaluate
 from codegen.ir import nodes as ir
+from codegen.ir.domains import Interval
 from codegen.ir.verify import verify
 from codegen.library import load_library
 from codegen.passes.operations import operations
@@ -25,6 +26,8 @@ from conformance.unit.support.sources import library_of
 from conformance.unit.support.trees import no_function
 
 LIBRARY = load_library()
+SATURATED = 5e34
+"""Just below e^80, where safe_pow stops growing."""
 SMALLEST = 1e-30
 """Powers below this may be denormal on the way; their relative error is not stated."""
 GLSL = StmtPrinter(dialect("glsl", None))
@@ -128,3 +131,20 @@ def test_product_of_a_whole_exponent_errs_as_stated(name: str, exponent: int) ->
     exact = ((1.0 - base.astype(np.float64)) if row.roundings else base.astype(np.float64)) ** exponent
     normal = exact > SMALLEST
     assert (np.abs(got - exact)[normal] <= error(exponent, row.roundings) * exact[normal]).all()
+
+
+@pytest.mark.parametrize("name", [name for name, row in ROWS.items() if not row.roundings])
+@pytest.mark.parametrize("exponent", [1, 11, 64, 1000])
+def test_product_of_a_large_base_saturates_as_the_power_does(name: str, exponent: int) -> None:
+    found = specialise(LIBRARY, name, constants={"y": float(exponent)}, new_name="f", powers=1000)
+    domain = LIBRARY.function(name).parameters[0].domain
+    assert isinstance(domain, Interval)
+    base = np.linspace(1.0, domain.high, 500).astype(np.float32)
+    got = evaluate(LIBRARY.with_functions([found.function]), "f", {"x": base}, "float32")
+    assert isinstance(got, np.ndarray)
+    assert np.isfinite(got).all()
+    with np.errstate(over="ignore"):
+        exact = np.minimum(base.astype(np.float64) ** exponent, SATURATED)
+    below = exact < SATURATED
+    assert (np.abs(got - exact)[below] <= error(exponent, 0) * exact[below]).all()
+    assert (got[~below] > 0.9 * SATURATED).all()
