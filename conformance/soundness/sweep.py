@@ -1,0 +1,149 @@
+"""Holds the intervals of one function against enclosures of the exact value: many points, all tables."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from codegen.intervals import TABLES, Table, load_table, permitted
+from codegen.ir import nodes as ir
+from codegen.library import Library
+from conformance import cases
+from conformance.check.draws import Draw, length
+from conformance.check.sample import together
+from conformance.soundness.enclosure import Array
+from conformance.soundness.held import Held, either_way, held, holds, precisely
+from conformance.soundness.walk import enclosed
+
+BATCH = 1 << 16
+"""Random points drawn at a time."""
+HARD = 1000
+"""Points of a family that has no number of its own, such as the ends of domains."""
+MOST_HARD = 20_000
+"""Points of one family at most: each stored point with each parameter that it fits comes first."""
+PRECISE = 4096
+"""Lanes of a batch that are undecided under some table and evaluated in 50 digits; others stay undecided."""
+DEPENDENT = frozenset({"sqrt", "inverse_sqrt", "length", "normalize", "dot", "cross"})
+"""Operations whose promise may lean on each other and on division."""
+INTERVALS = Path(__file__).parents[2] / "codegen/intervals"
+
+
+@dataclass
+class Count:
+    """Lanes under one table: inside by enclosure, inside by 50 digits, not promised, undecided, outside."""
+
+    enclosed: int = 0
+    precise: int = 0
+    open: int = 0
+    undecided: int = 0
+    outside: int = 0
+
+    def add(self, verdict: Held, looked_at: int, inside: Array) -> None:
+        """Count a batch, of whose undecided lanes some were looked at in 50 digits."""
+        self.enclosed += int(verdict.inside.sum())
+        self.open += int(verdict.open.sum())
+        self.precise += int(inside.sum())
+        self.undecided += int(verdict.undecided.sum()) - looked_at
+        self.outside += int(verdict.outside.sum()) + int((~inside).sum())
+
+
+@dataclass
+class Swept:
+    """What one function's sweep found; `shared` names tables that promise the same of its operations."""
+
+    function: str
+    source: str
+    intervals: str
+    points: int = 0
+    hard: int = 0
+    seconds: float = 0.0
+    shared: dict[str, list[str]] = field(default_factory=dict)
+    tables: dict[str, Count] = field(default_factory=dict)
+    worst: str = ""
+
+    def entry(self) -> dict[str, Any]:
+        """As data."""
+        return {**asdict(self), "seconds": round(self.seconds, 1)}
+
+
+def operations(library: Library, name: str) -> frozenset[str]:
+    """Operations of the registry that a function and all it calls may use."""
+    found = set()
+    for function in library.select([name]).functions:
+        for e in ir.expressions(function.body):
+            if isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
+                found.add(e.op)
+            elif isinstance(e, ir.Convert):
+                found.add("cast")
+    return frozenset(found | DEPENDENT | {"/"} if found & DEPENDENT else found)
+
+
+def different(library: Library, name: str) -> dict[str, tuple[Table, list[str]]]:
+    """Tables whose intervals of a function may differ: name -> (table, names that promise the same)."""
+    used = operations(library, name)
+    found: dict[Any, tuple[Table, list[str]]] = {}
+    for table_name in TABLES:
+        table = either_way(load_table(table_name))
+        rows = [table.rows[op] for op in sorted(used)]
+        key = table.flush, *((r.accuracy, str(r.magnitude), r.reciprocal, r.zero, r.normal) for r in rows)
+        found.setdefault(key, (table, []))[1].append(table_name)
+    return {table.name: (table, names) for table, names in found.values()}
+
+
+def batches(library: Library, name: str, points: int) -> Iterator[tuple[bool, Mapping[str, Any]]]:
+    """All hard cases together, then random points until there are enough: (hard, inputs)."""
+    function = library.function(name)
+    draws = []
+    for family in cases.families_for(function.parameters):
+        count = min(cases.coverage(function, family) or HARD, MOST_HARD)
+        inputs = cases.draw(function, family, count)
+        draws.append(Draw(family, count, 0, inputs))
+    if cases.has_worst(function):
+        worst = cases.worst(function)
+        draws.append(Draw(cases.WORST, length(worst), 0, worst))
+    if draws:
+        yield True, together(draws).inputs
+    for seed in range(1, -(-points // BATCH) + 1):
+        yield False, cases.draw(function, cases.UNIFORM, min(BATCH, points - (seed - 1) * BATCH), seed)
+
+
+def sweep(library: Library, name: str, points: int) -> Swept:
+    """Hard cases and so many random points of one function, under every table."""
+    begin = time.process_time()
+    found = Swept(name, library.select([name]).source_hash, intervals_hash())
+    tables = different(library, name)
+    for table_name, (_, names) in tables.items():
+        found.shared[table_name] = names
+        found.tables[table_name] = Count()
+    for hard, inputs in batches(library, name, points):
+        count = length(inputs)
+        found.points += count
+        found.hard += count if hard else 0
+        value, lost = enclosed(library, name, inputs)
+        allowed = {t: permitted(library, name, inputs, table) for t, (table, _) in tables.items()}
+        verdicts = {t: held(a, value, lost) for t, a in allowed.items()}
+        some = np.flatnonzero(np.logical_or.reduce([v.undecided for v in verdicts.values()]))[:PRECISE]
+        precise = precisely(library, name, inputs, some)
+        for table_name, verdict in verdicts.items():
+            lanes = some[verdict.undecided[some]]
+            inside = holds(allowed[table_name], some, precise)[verdict.undecided[some]]
+            found.tables[table_name].add(verdict, len(lanes), inside)
+            bad = [*np.flatnonzero(verdict.outside), *lanes[~inside]]
+            if bad and not found.worst:
+                found.worst = f"{table_name}: {cases.words(library.function(name), inputs, int(bad[0]))}"
+    found.seconds = time.process_time() - begin
+    return found
+
+
+def intervals_hash() -> str:
+    """Of everything that makes intervals: what was shown of others is stale."""
+    digest = hashlib.sha256()
+    for path in sorted([*INTERVALS.glob("*.py"), *INTERVALS.glob("tables/*.toml")]):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]

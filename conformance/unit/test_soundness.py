@@ -1,0 +1,163 @@
+"""Enclosures hold exact values, tell what intervals miss, and what was recorded of them still passes.
+
+Plan.
+  enclosures  every operation's holds the value in 50 digits and is narrow; exact operations stay points
+  functions   on a sample of functions, intervals under every table hold the enclosed value on every lane
+  tightness   a row that promises too much is caught by the enclosures alone, operation by operation
+  record      in what was recorded no interval missed a value, and every lane is accounted for
+The whole sweep is `python -m conformance.soundness`; the nightly run does what is not recorded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from codegen.evaluate import evaluate
+from codegen.intervals import Table, load_table, permitted
+from codegen.intervals.accuracy import Absolute, Ulp
+from codegen.library import load_library
+from conformance.soundness import record
+from conformance.soundness import sweep as sweeping
+from conformance.soundness.__main__ import POINTS
+from conformance.soundness.enclosure import Enclosure
+from conformance.soundness.held import either_way, held, scalars
+from conformance.soundness.sweep import different, sweep
+from conformance.soundness.walk import enclosed, leaves
+from conformance.unit.support.sources import library_of
+
+LIBRARY = load_library()
+SEED = 20261123
+FEW = 300
+SAMPLE = ("sin_angle", "fakefur_shade", "hammersley", "safe_pow", "ggx_sample", "latlong_direction")
+OPERATIONS = (
+    "a + b",
+    "a - b",
+    "a * b",
+    "(a + b) * (a + b)",
+    "a / b",
+    "(a + b) / (a * b)",
+    "sqrt(abs(a + b))",
+    "inverse_sqrt(abs(a) + 0.1)",
+    "exp(a + b)",
+    "exp2(a * b)",
+    "log(abs(a) + abs(b))",
+    "log2(abs(a * b) + 1.0)",
+    "sin(a + b)",
+    "cos(a * b)",
+    "atan2(a, b)",
+    "floor(a * 3.0) + b",
+    "min(a + b, a * b) - max(a, b)",
+    "clamp(a + b, -0.5, 0.5)",
+    "length(vec3(a, b, a + b))",
+    "dot(normalize(vec3(a, b, 1.0)), cross(vec3(a, b, 2.0), vec3(b, a, 1.0)))",
+    "f32(i32(a * 5.0)) + b",
+    "a + b if a < b else a * b",
+)
+NARROW = 1e-12
+"""Width of an enclosure after a few operations, relative to 1 + |value|: 4500 float64 steps."""
+
+
+@pytest.mark.parametrize("text", OPERATIONS)
+def test_enclosure_holds_the_exact_value(text: str, tmp_path: Path) -> None:
+    library = library_of(tmp_path, f"def probe(a: X, b: X) -> f32:\n    return {text}\n")
+    rng = np.random.default_rng(SEED)
+    inputs = {name: rng.normal(0.0, 1.5, FEW).astype(np.float32) for name in "ab"}
+    value, lost = enclosed(library, "probe", inputs)
+    with mpmath.workdps(50):
+        exact = evaluate(library, "probe", inputs, "mpmath")
+        assert isinstance(value, Enclosure) and isinstance(exact, np.ndarray)
+        for low, high, x in zip(value.low[~lost], value.high[~lost], exact[~lost], strict=True):
+            assert mpmath.mpf(low) <= x <= mpmath.mpf(high)
+            assert high - low <= NARROW * (1.0 + abs(x))
+    assert lost.mean() < 0.02
+
+
+def test_exact_operations_stay_points(tmp_path: Path) -> None:
+    text = "vec4(a * b, a - 0.5, (a * 2.0) / 4.0, max(a, b) + 0.25)"
+    library = library_of(tmp_path, f"def probe(a: X, b: X) -> vec4:\n    return {text}\n")
+    value, lost = enclosed(library, "probe", {"a": [0.5, 3.0], "b": [0.1, -7.5]})
+    assert not lost.any()
+    for x in leaves(value):
+        assert isinstance(x, Enclosure)
+        assert np.array_equal(x.low, x.high)
+
+
+@pytest.mark.parametrize("name", SAMPLE)
+def test_intervals_hold_the_exact_value(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sweeping, "MOST_HARD", FEW // 10)
+    found = sweep(LIBRARY, name, FEW)
+    for table, count in found.tables.items():
+        assert count.outside == 0, f"{table}: {found.worst}"
+        assert count.undecided == 0, table
+        assert count.enclosed > count.precise
+
+
+TOO_TIGHT: dict[str, tuple[str, Ulp | Absolute]] = {
+    "1.0 / a": ("/", Ulp(0.1)),
+    "inverse_sqrt(a)": ("inverse_sqrt", Ulp(0.1)),
+    "exp(a)": ("exp", Ulp(0.1)),
+    "exp2(a)": ("exp2", Ulp(0.1)),
+    "log(a)": ("log", Absolute(1e-9, (0.5, 2.0), Ulp(0.1))),
+    "sin(a)": ("sin", Absolute(1e-9, (-3.0, 3.0))),
+    "cos(a)": ("cos", Ulp(0.1)),
+    "atan2(a, 2.0)": ("atan2", Ulp(0.1)),
+}
+
+
+@pytest.mark.parametrize("text", TOO_TIGHT)
+def test_too_tight_a_row_is_caught(text: str, tmp_path: Path) -> None:
+    operation, accuracy = TOO_TIGHT[text]
+    library = library_of(tmp_path, f"def probe(a: X) -> f32:\n    return {text}\n")
+    inputs = {"a": np.linspace(0.1, 2.9, FEW).astype(np.float32)}
+    value, lost = enclosed(library, "probe", inputs)
+
+    def outside(table: Table) -> int:
+        return int(held(permitted(library, "probe", inputs, table), value, lost).outside.sum())
+
+    table = load_table("wgsl")
+    tight = replace(table, rows={**table.rows, operation: replace(table.row(operation), accuracy=accuracy)})
+    assert outside(table) == 0
+    assert outside(tight) > FEW // 2
+
+
+def test_tables_that_promise_the_same_are_swept_once() -> None:
+    groups = different(LIBRARY, "hammersley")
+    assert sorted(name for _, names in groups.values() for name in names) == sorted(
+        ["wgsl", "vulkan", "glsl", "glsl_es", "opencl", "opencl_relaxed"]
+    )
+    inputs = {"i": np.arange(50, dtype=np.uint32), "n": np.full(50, 64, np.uint32)}
+    inputs = {p.name: inputs[p.name] for p in LIBRARY.function("hammersley").parameters}
+    for first, names in groups.values():
+        for name in names[1:]:
+            other: Any = permitted(LIBRARY, "hammersley", inputs, either_way(load_table(name)))
+            found: Any = permitted(LIBRARY, "hammersley", inputs, first)
+            for a, b in zip(scalars(found.low), scalars(other.low), strict=True):
+                assert np.array_equal(a, b)
+
+
+def test_record_passes() -> None:
+    entries = record.read()
+    assert entries, "python -m conformance.soundness writes it"
+    assert set(entries) <= set(LIBRARY.public), "functions that are gone"
+    for entry in entries.values():
+        assert record.passed(entry), f"{entry['function']}: {entry['worst']}"
+        for count in entry["tables"].values():
+            assert sum(count.values()) == entry["points"]
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(3 * 3600)
+@pytest.mark.parametrize("name", LIBRARY.public)
+def test_intervals_hold_a_million_exact_values(name: str) -> None:
+    entries = record.read()
+    if name in entries and entries[name]["points"] >= POINTS and record.is_current(LIBRARY, entries[name]):
+        entry = entries[name]
+    else:
+        entry = sweep(LIBRARY, name, POINTS).entry()
+    assert record.passed(entry), entry["worst"]
