@@ -19,6 +19,10 @@ from conformance.bench.emission import emission_figures
 from conformance.bench.inputs import groups
 from conformance.bench.record import rounded
 from conformance.bench.run import Options, measure, places
+from conformance.light import plan
+from conformance.light.record import keep as keep_light
+from conformance.light.record import recorded as recorded_light
+from conformance.light.run import measure as measure_light
 from conformance.report.agreement import agreement
 from conformance.report.model import build, read_report
 from conformance.report.scenes import figures_of
@@ -79,12 +83,18 @@ def command(
     shown = [figures_of(path, folder) for path in scenes]
     skipped: dict[str, str] = {}
     emission: list[dict[str, Any]] = []
+    light: dict[str, Any] | None = None
     if from_recorded:
         results = kept_results(library, targets, wanted)
+        light = None if wanted else recorded_light()
     else:
         if not (quick or wanted):
             emission = [f.as_data() for f in emission_figures(library, EMISSION_RUNS)]
         results, skipped = measured(library, where, quick, wanted, record, named=bool(targets or drivers))
+        if not wanted and plan.maps_are_here():
+            chosen = plan.Plan.quick() if quick else plan.Plan()
+            with Watcher() as watcher:
+                light, _ = measure_light(where, chosen, watcher, at_once=1 if record else 2, quick=quick)
     report = build(
         library,
         results,
@@ -93,6 +103,7 @@ def command(
         skipped=skipped,
         emission=rounded(emission),
         scenes=shown,
+        light=light,
     )
     say_skipped(results, skipped)
     for path in write(library, report, folder):
@@ -100,6 +111,8 @@ def command(
     if record:
         for path in keep(results, overview(report)):
             click.echo(f"recorded  {path.name}")
+        for path in keep_light(light) if light is not None else ():
+            click.echo(f"recorded  light/{path.name}")
     if before is not None:
         say_agreement(results, before["drivers"])
 

@@ -19,17 +19,19 @@ from codegen.library import Library
 from conformance.bench.ratios import Spread, spread
 from conformance.bench.record import quartiles
 from conformance.bench.timing import Bench
-from conformance.light import estimators, plan
+from conformance.light import estimators, plan, prefiltered
 from conformance.light.environment import Environment
 from conformance.light.lobes import Lobe
 from conformance.light.modelled import Curve
 from conformance.light.plan import Plan
 from targets import TimedRuntime
+from targets.protocol import Prepared
 
 Array = npt.NDArray[np.float64]
 
 BY_LOBE = ("grid", "monte_carlo", "filtered", "guarded")
 """Estimators of which the library has one function for every lobe."""
+PREFILTERED = "env_prefiltered"
 LEAST_LANES = 32
 SAMPLES_A_LAUNCH = 1 << 15
 """Of a software driver, at least: some milliseconds."""
@@ -113,37 +115,64 @@ def errors(
     return Curve(chosen.counts, tuple(rms))
 
 
+def prefiltered_error(
+    library: Library, runtime: TimedRuntime, chosen: Plan, lobe: Lobe, convolved: TextureMap, truth: Array
+) -> Curve:
+    """The error of one lookup as the driver makes it; the factor of the lobe is multiplied here."""
+    view = plan.frames(chosen)
+    given = {"env": convolved, "w": prefiltered.directions(view, lobe)}
+    got = np.asarray(execute(library, PREFILTERED, given, runtime), np.float64)
+    return Curve((1,), (estimators.rms(got * prefiltered.scale(view, lobe), truth),))
+
+
 def times(
-    bench: Bench, names: Mapping[str, str], chosen: Plan, lobe: Lobe, env: TextureMap
+    bench: Bench,
+    names: Mapping[str, str],
+    chosen: Plan,
+    lobe: Lobe,
+    env: TextureMap,
+    convolved: TextureMap | None = None,
 ) -> dict[str, Times]:
     """The time of estimators of one lobe with the timed numbers of samples, all of them interleaved.
 
-    names  estimator -> function
+    names      estimator -> function
+    convolved  the map of the one lookup in a prefiltered map, where there is one
     """
+    calls = {
+        (estimator, count): (name, arguments(bench.library, name, chosen, lobe, (count,), env))
+        for estimator, name in names.items()
+        for count in chosen.timed
+    }
+    if convolved is not None:
+        given = {"env": convolved, "w": prefiltered.directions(plan.frames(chosen), lobe)}
+        calls[prefiltered.NAME, 1] = PREFILTERED, given
     ready, lanes = {}, {}
-    target = bench.runtime.device.target
     try:
-        for estimator, name in names.items():
-            function = bench.library.function(name)
-            types = {p.name: p.type for p in function.parameters}
-            for count in chosen.timed:
-                given = arguments(bench.library, name, chosen, lobe, (count,), env)
-                arrays, n = convert_inputs(types, given, arithmetic("float32"), name)
-                words, maps = on_device(function, arrays, n)
-                wanted = max(SAMPLES_A_LAUNCH // count, LEAST_LANES) if bench.software else HARDWARE_LANES
-                words = np.resize(words.T, (wanted, len(words))).T
-                key = f"{estimator} {count}"
-                lanes[key] = wanted
-                ready[key] = bench.runtime.prepare(
-                    kernel(bench.library, name, target), words, len(leaves(function.returns)), maps
-                )
+        for (estimator, count), (name, given) in calls.items():
+            key = f"{estimator} {count}"
+            lanes[key] = max(SAMPLES_A_LAUNCH // count, LEAST_LANES) if bench.software else HARDWARE_LANES
+            ready[key] = _prepared(bench, name, given, lanes[key])
         rounds = bench.rounds(ready)
     finally:
         for one in ready.values():
             one.release()
+    spreads = {
+        key: spread([(t / 2.0 - bench.empty) / lanes[key] * 1e9 for t in taken])
+        for key, taken in rounds.items()
+    }
     found = {}
-    for estimator in names:
-        keys = [f"{estimator} {count}" for count in chosen.timed]
-        spreads = [spread([(t / 2.0 - bench.empty) / lanes[key] * 1e9 for t in rounds[key]]) for key in keys]
-        found[estimator] = Times(chosen.timed, tuple(spreads))
+    for estimator in dict.fromkeys(estimator for estimator, _ in calls):
+        counts = tuple(count for e, count in calls if e == estimator)
+        found[estimator] = Times(counts, tuple(spreads[f"{estimator} {count}"] for count in counts))
     return found
+
+
+def _prepared(bench: Bench, name: str, given: Mapping[str, Any], lanes: int) -> Prepared:
+    """A call on the device, its inputs repeated over so many lanes."""
+    function = bench.library.function(name)
+    types = {p.name: p.type for p in function.parameters}
+    arrays, n = convert_inputs(types, given, arithmetic("float32"), name)
+    words, maps = on_device(function, arrays, n)
+    words = np.ascontiguousarray(np.resize(words.T, (lanes, len(words))).T)
+    program = kernel(bench.library, name, bench.runtime.device.target)
+    return bench.runtime.prepare(program, words, len(leaves(function.returns)), maps)

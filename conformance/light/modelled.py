@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from codegen.maps.radiance import read_radiance
-from conformance.light import estimators, plan
+from conformance.light import estimators, plan, prefiltered
 from conformance.light.environment import Environment, MapSampler
 from conformance.light.lobes import Lobe, View
 from conformance.light.plan import Plan
@@ -19,6 +19,9 @@ Array = npt.NDArray[np.float64]
 
 HOST_SIDE = "combined"
 """Samples of lobe and map together: the map's distribution is made on the host."""
+BIAS = "bias"
+"""What remains of the filtered estimator's error when it is averaged over AVERAGED shifts of the points."""
+AVERAGED = 16
 
 
 @dataclass(frozen=True)
@@ -73,7 +76,28 @@ def curves(
             for count in chosen.counts
         ]
         found[name] = Curve(chosen.counts, tuple(errors))
-    return {"grid": _grid(chosen, lobe, here, truth), **found}
+    found = {"grid": _grid(chosen, lobe, here, truth), **found, BIAS: _bias(chosen, lobe, here, truth)}
+    exponent = prefiltered.exponent_of(lobe)
+    if exponent is not None:
+        found[prefiltered.NAME] = _prefiltered(chosen, lobe, prefiltered.convolved(here, exponent), truth)
+    return found
+
+
+def _prefiltered(chosen: Plan, lobe: Lobe, convolved: Environment, truth: Array) -> Curve:
+    view = plan.frames(chosen)
+    estimate = convolved.radiance(prefiltered.directions(view, lobe)) * prefiltered.scale(view, lobe)
+    return Curve((1,), (estimators.rms(estimate, truth),))
+
+
+def _bias(chosen: Plan, lobe: Lobe, here: Environment, truth: Array) -> Curve:
+    """The error of the mean over many shifts; of so many samples that the shifts number fewer of them."""
+    many = replace(chosen, shifts=AVERAGED)
+    view, counts = plan.repeated(many), tuple(n for n in chosen.counts if n <= max(chosen.counts) // 8)
+    errors = []
+    for count in counts:
+        estimate = estimators.filtered(here, view, lobe, plan.points(many, count))
+        errors.append(estimators.rms(estimate.reshape(chosen.views, AVERAGED, 3).mean(axis=1), truth))
+    return Curve(counts, tuple(errors))
 
 
 def _grid(chosen: Plan, lobe: Lobe, here: Environment, truth: Array) -> Curve:

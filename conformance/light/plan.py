@@ -17,6 +17,8 @@ from conformance.reference.sampling import cranley_patterson, sphere_uniform
 Array = npt.NDArray[np.float64]
 
 DATA = default_root().parent / "examples" / "data"
+SCHEMA = 1
+"""Of the results."""
 SEED = 20_267
 GRID = 2**24
 """Shifts lie on the grid of the samples, so that float32 and float64 see the same points."""
@@ -85,6 +87,11 @@ def path_of(name: str) -> Path:
     if not path.is_file():
         raise UserError(f'the map "{path}" is missing: estimators of light are measured under it')
     return path
+
+
+def maps_are_here() -> bool:
+    """Whether the maps are installed: a package without the examples lacks them."""
+    return all((DATA / f"{name}.exr").is_file() for name in Plan().maps)
 
 
 def frames(plan: Plan) -> View:

@@ -20,12 +20,11 @@ from conformance.light import modelled
 from conformance.light.environment import Environment, MapSampler
 from conformance.light.goals import goals
 from conformance.light.lobes import Lobe
-from conformance.light.plan import Plan
-from conformance.light.worker import Job
+from conformance.light.plan import SCHEMA, Plan
+from conformance.light.worker import Job, Truths
 
 Array = npt.NDArray[np.float64]
 
-SCHEMA = 1
 LABEL = "float64"
 """What the part without a driver is called in messages."""
 METHOD = {
@@ -45,25 +44,32 @@ def measure(
     at_once: int = 2,
     quick: bool = False,
 ) -> tuple[dict[str, Any], dict[str, str]]:
-    """The data of the report's section on estimators; and by label why drivers are missing."""
+    """The data of the report's section on estimators; and by label why drivers are missing.
+
+    returns  float64: what needs no driver, see README.md; drivers: one object each
+    """
+    modelled_data, truths = in_float64(chosen, watch, at_once=at_once, quick=quick)
+    drivers, missing = on_drivers(where, chosen, truths, watch, at_once=at_once)
+    return {LABEL: modelled_data, "drivers": drivers}, missing
+
+
+def in_float64(
+    chosen: Plan, watch: Watch, *, at_once: int, quick: bool = False
+) -> tuple[dict[str, Any], Truths]:
+    """What needs no driver: errors of the estimators in float64, and the promised figures; and the truths."""
     watch(LABEL, {"event": "started", "total": len(chosen.lobes)})
     truths: dict[str, dict[str, Array]] = {name: {} for name in chosen.maps}
-    errors: dict[str, dict[str, Any]] = {name: {} for name in chosen.maps}
+    errors: list[dict[str, Any]] = []
     with ProcessPoolExecutor(min(at_once, os.cpu_count() or 1)) as pool:
         for lobe, (truth, curves) in zip(
             chosen.lobes, pool.map(_of_lobe, [chosen] * len(chosen.lobes), chosen.lobes), strict=True
         ):
             for name in chosen.maps:
                 truths[name][str(lobe)] = truth[name]
-                errors[name][str(lobe)] = {e: asdict(c) for e, c in curves[name].items()}
+                for e, curve in curves[name].items():
+                    errors.append({"map": name, "lobe": str(lobe), "estimator": e, **asdict(curve)})
             watch(LABEL, {"event": "done", "what": str(lobe)})
-
-    def work(place: Place, seconds: float) -> dict[str, Any] | str:
-        job = Job(place.target, place.driver, chosen, truths)
-        return in_worker("conformance.light.worker", place, job.to_json(), watch)
-
-    drivers, missing = side_by_side(where, at_once, 0.0, work)
-    found: dict[str, Any] = rounded(
+    data: dict[str, Any] = rounded(
         {
             "schema": SCHEMA,
             "version": VERSION,
@@ -73,12 +79,23 @@ def measure(
             "method": METHOD,
             "maps": list(chosen.maps),
             "lobes": [str(lobe) for lobe in chosen.lobes],
-            "float64": errors,
-            "drivers": drivers,
+            "errors": errors,
             "figures": [figure.as_data() for figure in goals(quick=quick)],
         }
     )
-    return found, missing
+    return data, truths
+
+
+def on_drivers(
+    where: Sequence[Place], chosen: Plan, truths: Truths, watch: Watch, *, at_once: int
+) -> tuple[list[dict[str, Any]], dict[str, str]]:
+    """Errors and times of the emitted functions, one object per driver; and why others are missing."""
+
+    def work(place: Place, seconds: float) -> dict[str, Any] | str:
+        job = Job(place.target, place.driver, chosen, truths)
+        return in_worker("conformance.light.worker", place, job.to_json(), watch)
+
+    return side_by_side(where, at_once, 0.0, work)
 
 
 @cache

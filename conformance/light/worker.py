@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from codegen.evaluate.textures import TextureMap
 from codegen.library import Library, load_library
 from conformance.bench.record import described_device
 from conformance.bench.timing import QUICK, Bench
 from conformance.bench.worker import Say, opened_driver, serve
-from conformance.light import emitted, modelled
+from conformance.light import emitted, modelled, prefiltered
 from conformance.light.lobes import Lobe
 from conformance.light.plan import SCHEMA, Plan
 
@@ -65,7 +66,8 @@ def measure(job: Job, library: Library, say: Say) -> dict[str, Any]:
     chosen = job.plan
     say("started", total=len(chosen.lobes) + 1)
     bench = Bench(library, runtime, replace(QUICK, rounds=chosen.rounds, most=chosen.rounds))
-    maps = {name: emitted.texture(here) for name, here in modelled.environments(chosen).items()}
+    environments = modelled.environments(chosen)
+    maps = {name: emitted.texture(here) for name, here in environments.items()}
     say("done", what="maps")
     errors: list[dict[str, Any]] = []
     times: list[dict[str, Any]] = []
@@ -76,8 +78,16 @@ def measure(job: Job, library: Library, say: Say) -> dict[str, Any]:
             for e in names:
                 curve = emitted.errors(library, runtime, e, chosen, lobe, env, job.truths[m][label])
                 errors.append({"map": m, "lobe": label, "estimator": e, **asdict(curve)})
+        one: TextureMap | None = None
+        exponent = prefiltered.exponent_of(lobe)
+        if exponent is not None:
+            for m, here in environments.items():
+                mean = emitted.texture(prefiltered.convolved(here, exponent))
+                one = one or mean
+                curve = emitted.prefiltered_error(library, runtime, chosen, lobe, mean, job.truths[m][label])
+                errors.append({"map": m, "lobe": label, "estimator": prefiltered.NAME, **asdict(curve)})
         first = next(iter(maps.values()))
-        for e, t in emitted.times(bench, names, chosen, lobe, first).items():
+        for e, t in emitted.times(bench, names, chosen, lobe, first, one).items():
             times.append({"lobe": label, "estimator": e, **t.as_data()})
         say("done", what=label)
     return {

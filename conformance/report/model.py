@@ -35,6 +35,7 @@ def build(
     skipped: Mapping[str, str] | None = None,
     emission: list[dict[str, Any]] | None = None,
     scenes: list[dict[str, Any]] | None = None,
+    light: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
     """The whole report as plain data.
 
@@ -42,6 +43,7 @@ def build(
     command   what was typed
     recorded  whether the results are the kept ones, measured at their own dates
     skipped   label of a driver -> why it was not measured
+    light     of the estimators of light, as conformance.light.run.measure gives it
     """
     return {
         "schema": SCHEMA,
@@ -56,6 +58,7 @@ def build(
         "fronts": [f for result in results for f in fronts(result)],
         "emission": emission or [],
         "scenes": scenes or [],
+        "light": light,
     }
 
 

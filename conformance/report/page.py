@@ -12,6 +12,7 @@ import jinja2
 
 from codegen.library import Library
 from conformance.bench.selfcheck import EXPECTED, MEANING
+from conformance.report.light import light_view
 from conformance.report.view import KINDS, MODES, view
 
 PLOTLY = ("plotly", "package_data/plotly.min.js")
@@ -21,6 +22,29 @@ TABLES_STYLE = ("itables", "html/dt_bundle.css")
 
 def page(library: Library, report: Mapping[str, Any]) -> str:
     """The whole page."""
+    shown = view(library, report)
+    scripts = ["plots.js", "report.js"] + (["light.js"] if report["light"] else [])
+    return _template("report.html.j2").render(
+        **_shared(report, scripts),
+        view=shown,
+        rows=[(g, e) for g in shown["groups"] for e in g["entries"]],
+        kinds=KINDS,
+        modes=MODES,
+        expected=EXPECTED,
+        meaning=MEANING,
+        data=embedded({key: shown[key] for key in ("drivers", "modes", "groups")}),
+        tables=base64.b64encode(_text(*TABLES).encode()).decode(),
+        tables_style=_text(*TABLES_STYLE),
+    )
+
+
+def light_page(light: Mapping[str, Any]) -> str:
+    """A page of its own for the estimators of light, from the data of conformance.light.run.measure."""
+    report = {"drivers": [], "emission": [], "light": light}
+    return _template("light_page.html.j2").render(**_shared(report, ["plots.js", "light.js"]))
+
+
+def _template(name: str) -> jinja2.Template:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("conformance.report", "page"),
         autoescape=True,
@@ -29,23 +53,21 @@ def page(library: Library, report: Mapping[str, Any]) -> str:
         lstrip_blocks=True,
     )
     environment.filters["number"] = number
-    shown = view(library, report)
-    return environment.get_template("report.html.j2").render(
-        report=report,
-        view=shown,
-        rows=[(g, e) for g in shown["groups"] for e in g["entries"]],
-        kinds=KINDS,
-        modes=MODES,
-        expected=EXPECTED,
-        meaning=MEANING,
-        figures=figures(report),
-        data=embedded({key: shown[key] for key in ("drivers", "modes", "groups")}),
-        plotly=_text(*PLOTLY),
-        tables=base64.b64encode(_text(*TABLES).encode()).decode(),
-        tables_style=_text(*TABLES_STYLE),
-        style=_text("conformance.report", "page/report.css"),
-        script=_text("conformance.report", "page/report.js"),
-    )
+    return environment.get_template(name)
+
+
+def _shared(report: Mapping[str, Any], scripts: list[str]) -> dict[str, Any]:
+    """What both pages show or need."""
+    light = light_view(report["light"])
+    return {
+        "report": report,
+        "light": light,
+        "light_data": embedded(light["data"]) if light else "",
+        "figures": figures(report),
+        "plotly": _text(*PLOTLY),
+        "style": _text("conformance.report", "page/report.css"),
+        "script": "\n".join(_text("conformance.report", f"page/{name}") for name in scripts),
+    }
 
 
 def embedded(data: Any) -> str:
@@ -60,7 +82,8 @@ def figures(report: Mapping[str, Any]) -> list[dict[str, Any]]:
         for f in result["figures"]:
             key = (f["what"], f["domain"], f["goal"], f["unit"])
             found.setdefault(key, {**f, "values": []})["values"].append((result["device"]["short"], f))
-    rows = [*found.values(), *({**f, "values": [("", f)]} for f in report["emission"])]
+    light = report["light"]["float64"]["figures"] if report["light"] else []
+    rows = [*found.values(), *({**f, "values": [("", f)]} for f in (*light, *report["emission"]))]
     return [{**row, "met": _met([f["met"] for _, f in row["values"]])} for row in rows]
 
 

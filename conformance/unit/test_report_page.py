@@ -21,6 +21,7 @@ import pytest
 from codegen.library import load_library
 from conformance.report.model import build
 from conformance.report.page import page
+from conformance.unit.support.light import small_section
 from conformance.unit.support.results import MESA, POCL, WORDS, small_result
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -66,7 +67,8 @@ def opened(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
     if BROWSER is None:
         pytest.skip("no chromium is here: apt-get install --no-install-recommends chromium")
     library = load_library()
-    report = build(library, [small_result(library, d) for d in (MESA, POCL)], command="vair report -o DIR")
+    results = [small_result(library, d) for d in (MESA, POCL)]
+    report = build(library, results, command="vair report -o DIR", light=small_section())
     folder: Path = tmp_path_factory.mktemp("page")
     (folder / "report.html").write_text(page(library, report), encoding="utf-8")
     address = f"{(folder / 'report.html').as_uri()}#driver=1&mode=latency&unit=ulp&filter=sin_angle"
@@ -95,7 +97,7 @@ def test_table_and_cards_are_filtered(opened: tuple[str, str]) -> None:
 def test_plots_are_drawn(opened: tuple[str, str]) -> None:
     found = Document()
     found.feed(opened[0])
-    assert found.plots >= 2, "the overview and a card"
+    assert found.plots >= 4, "the overview, a card, and two of the estimators of light"
     assert found.marks > 0 and found.bars > 0
 
 
