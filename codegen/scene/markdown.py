@@ -82,7 +82,8 @@ def _gains(data: dict[str, Any]) -> list[str]:
         "",
         "Operations: general, after exact passes, written; additions, multiplications, divisions, roots, "
         "exponentials, comparisons and choices, one each. SPIR-V: of GLSL for Vulkan by glslang, not "
-        f"optimised. Speed: interleaved in one process, {ROUNDS} rounds forwards and backwards, {CHAINS} "
+        "optimised, what is called for several lights counted once. Speed: interleaved in one process, "
+        f"{ROUNDS} rounds forwards and backwards, {CHAINS} "
         "independent evaluations side by side, net of inputs and loop, median [quartiles], on "
         "ordinary inputs; CPU time on software drivers. It holds for the driver that is named below. Build: "
         "from text to a kernel of the same measurement.",

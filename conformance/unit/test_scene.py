@@ -282,13 +282,26 @@ def test_files_are_the_same_to_the_byte(tmp_path: Path) -> None:
     assert b"was not executed" in found[0]["report.md"]
 
 
-@pytest.mark.parametrize(
-    ("change", "part"),
-    [
-        (("budget = 1e-3", "budget = 1e-12"), "no variant meets 1e-12; the best achievable is"),
-        (("exponent = {", "exponnet = {"), 'did you mean "exponent"?'),
-    ],
-)
+REFUSED = {
+    "model": (('"kajiya_kay"', '"kajia_kay"'), 'unknown model "kajia_kay"; did you mean "kajiya_kay"?'),
+    "parameter": (("exponent = {", "exponnet = {"), 'did you mean "exponent"?'),
+    "key": (("budget", "buget"), 'unknown key "buget"; did you mean "budget"?'),
+    "target": (("[shade]", 'targets = ["glls"]\n[shade]'), 'unknown target "glls"; did you mean "glsl"?'),
+    "range": (("min = 16.0", "min = 64.0"), "min = 64 is above max = 32"),
+    "constant": (("{ min = 16.0, max = 32.0 }", "1e9"), "is outside its domain"),
+    "budget": (("budget = 1e-3", "budget = 1e-12"), "no variant meets 1e-12; the best achievable is"),
+    "view": (
+        ("[parameters]", "[view]\nmin_t_dot_v = 0.5\nmax_t_dot_v = 0.25\n[parameters]"),
+        "0.5 contradicts max_t_dot_v = 0.25",
+    ),
+    "map": (
+        ("[parameters]", '[lights]\nenvironment = "absent.exr"\n[parameters]'),
+        "environment: cannot read",
+    ),
+}
+
+
+@pytest.mark.parametrize(("change", "part"), REFUSED.values(), ids=REFUSED)
 def test_nothing_is_written_where_something_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], change: tuple[str, str], part: str
 ) -> None:

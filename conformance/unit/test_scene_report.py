@@ -1,0 +1,134 @@
+"""A scene's report says what was dropped, substituted, saved and lost; lights of all three kinds in one file.
+
+Plan. One scene with a directional light, a point light and a map, and ranges and constants, is built without
+drivers. report.json and report.md are held against what they have to say; speeds, which need a driver, are
+put in.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from codegen.cli import run
+from codegen.maps.image import exr
+from codegen.scene.markdown import as_markdown
+from codegen.scene.spirv import glslang
+
+SCENE = """
+[scene]
+name = "three kinds"
+budget = "half-step-8bit"
+[shade]
+model = "fakefur"
+[parameters]
+"coat.density" = 600.0
+"coat.hair_length" = 0.5
+"coat.radius_base" = 0.008
+"coat.radius_tip" = 0.002
+"optics.exponent" = { min = 16.0, max = 32.0 }
+"optics.rho_transmit" = "optics.rho_reflect"
+"optics.rho_surface" = 0.0
+[view]
+min_n_dot_v = 0.05
+[lights]
+directional = 1
+point = 1
+environment = "sky.exr"
+environment_lights = 2
+colour = { min = 0.0, max = 0.3 }
+"""
+SPEED = {"ns": 20.0, "low": 19.0, "high": 21.0, "build_seconds": 0.25}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("scene")
+    (made / "scene.toml").write_text(SCENE, encoding="utf-8")
+    (made / "sky.exr").write_bytes(exr(np.random.default_rng(3).random((8, 16, 3))))
+    assert run(["scene", str(made / "scene.toml"), "-o", str(made / "out"), "--no-drivers"]) == 0
+    return made / "out"
+
+
+@pytest.fixture(scope="module")
+def data(folder: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    return found
+
+
+def test_each_kind_of_light_has_only_the_inputs_it_needs(data: dict[str, Any], folder: Path) -> None:
+    assert data["scene"]["lights"] == {
+        "directional": 1,
+        "point": 1,
+        "environment": "sky.exr",
+        "environment_lights": 2,
+        "per_light": [],
+    }
+    left = [p["name"] for p in data["parameters"]["left"]]
+    assert {"l_0", "light_0", "light_position_1", "light_1", "position"} <= set(left)
+    assert not any(name.startswith("l_2") for name in left)  # the map's lights are constants of the text
+    for target in data["targets"]:
+        text = (folder / target["file"]).read_text(encoding="utf-8")
+        assert all(name in text for name in left)
+
+
+def test_it_says_what_went_and_why(data: dict[str, Any]) -> None:
+    gone = set(data["parameters"]["gone"])
+    assert {"density", "rho_transmit", "rho_surface", "cos_dark", "cos_lit"} <= gone
+    assert data["exact_steps"]
+    for step in data["exact_steps"]:
+        assert all(step[key] for key in ("pass", "what", "why", "where")), step
+    for target in data["targets"]:
+        assert target["approximations"]
+        for change in target["approximations"]:
+            assert change["what"]
+            assert change["why"]
+            assert 0.0 < change["predicted_error"] <= data["scene"]["budget"]
+        assert target["predicted"]["share_of_budget"] <= 1.0
+        assert target["proof"]["error"]["largest"] <= data["scene"]["budget"]
+        assert target["exact_proof"]["outside_intervals"] == 0
+
+
+def test_it_counts_before_and_after(data: dict[str, Any]) -> None:
+    for target in data["targets"]:
+        counts = target["operations"]
+        assert counts["general"]["all"] > counts["exact"]["all"] > counts["final"]["all"]
+        assert target["lines"]["general"] > target["lines"]["final"] > 10
+        spirv = target["spirv_instructions"]
+        if target["target"] == "glsl" and glslang() is not None:
+            assert min(spirv["general"], spirv["final"]) > 10  # general has one text for all lights
+        else:
+            assert spirv is None or set(spirv.values()) == {None}
+
+
+def test_the_dearest_parameter_is_the_first(data: dict[str, Any]) -> None:
+    costs = [row["operations_if_constant"] for row in data["remaining"]]
+    assert costs == sorted(costs)
+    assert costs[0] < data["targets"][0]["operations"]["final"]["all"]
+
+
+def test_the_map_is_measured(data: dict[str, Any]) -> None:
+    found = data["environment"]
+    assert len(found["lights"]) == 2
+    assert found["largest_error"] >= found["rms_error"] > 0.0
+
+
+def test_the_page_says_it_too(data: dict[str, Any]) -> None:
+    shown = copy.deepcopy(data)
+    for target in shown["targets"]:
+        target["speed"] = {"unit": "ns", "general": {**SPEED, "ns": 80.0}, "final": SPEED, "ratio": 0.25}
+    text = as_markdown(shown)
+    for target in shown["targets"]:
+        for change in target["approximations"]:
+            assert change["what"].replace("|", "\\|") in text
+    assert f"The dearest parameter is `{data['remaining'][0]['parameter']}`" in text
+    assert all(f"`{name}`" in text for name in data["parameters"]["gone"])
+    gains = next(line for line in text.splitlines() if line.startswith("| glsl | "))
+    assert "80" in gains
+    assert "20" in gains
+    assert "0.25" in gains
