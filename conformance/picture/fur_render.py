@@ -1,4 +1,4 @@
-"""From a scene with a [fur] table to a picture, drawn by OpenGL or WebGPU with the generated stages."""
+"""A scene with a [fur] table made ready, and drawn by OpenGL or WebGPU with the generated stages."""
 
 from __future__ import annotations
 
@@ -22,10 +22,9 @@ from codegen.library import Library
 from conformance.picture.backends import models
 from conformance.picture.fur_frame import ball, frame_values, view_projection
 from conformance.picture.fur_settings import Fur
-from conformance.picture.image import write_png
 from conformance.picture.scene import Picture, Scene, read_scene
 from conformance.picture.shade import bind
-from conformance.picture.tone import eight_bit, gradient
+from conformance.picture.tone import gradient
 from targets.raster import Draw
 from targets.raster import Scene as Drawing
 
@@ -144,27 +143,6 @@ def open_drawing(studio: FurStudio, target: str, dialect: str | None = None) -> 
 
     entries = {name: (f"{name}_vertex", f"{name}_fragment") for name in ("base", "shell", "fin")}
     return WgslScene(runtime, texts["fur.wgsl"], studio.draws(entries), studio.drawn_size)
-
-
-def draw_fur(studio: FurStudio, target: str) -> Doubles:
-    """The picture (height, width, 3) in linear light, over the background."""
-    drawing = open_drawing(studio, target)
-    samples = drawing.draw(studio.block.pack(studio.values(target)))
-    drawing.release()
-    return develop(studio.picture, samples)
-
-
-def render_fur(library: Library, path: Path, target: str | None, output: Path) -> tuple[str, str]:
-    """Draw a scene's fur on a target (the scene's first one if None) and write the PNG.
-
-    returns  the target and its driver
-    errors   UserError
-    """
-    studio = set_up_fur(library, path)
-    chosen = target or studio.scene.targets[0]
-    write_png(output, eight_bit(draw_fur(studio, chosen)))
-    device = open_runtime(chosen).device
-    return chosen, f"{device.driver}, {device.device}"
 
 
 def develop(picture: Picture, samples: npt.NDArray[np.float32]) -> Doubles:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from codegen.errors import UserError
 from codegen.library import Library
 from conformance.picture.backends import models, open_backend
-from conformance.picture.fur_render import render_fur
+from conformance.picture.fur_picture import render_fur
 from conformance.picture.image import write_png
 from conformance.picture.mesh import Mesh, read_mesh
 from conformance.picture.scene import Picture, Scene, read_scene

@@ -88,7 +88,7 @@ def see(
         triangle[rows] = rays.intersects_first(origins, directions[rows])
     covered = triangle >= 0
     corners = mesh.triangles[triangle[covered]]
-    weights = _barycentric(mesh.positions[corners], eye, directions[covered])
+    weights = barycentric(mesh.positions[corners], eye, directions[covered])
     position = np.einsum("ijk,ij->ik", mesh.positions[corners], weights)
     n = _unit32(np.einsum("ijk,ij->ik", mesh.normals[corners], weights))
     lifted = position + SHADOW_LIFT * mesh.size * n.astype(np.float64)
@@ -110,7 +110,7 @@ def see(
     )
 
 
-def _barycentric(corners: Doubles, eye: Doubles, directions: Doubles) -> Doubles:
+def barycentric(corners: Doubles, eye: Doubles, directions: Doubles) -> Doubles:
     """Weights (N, 3) of the corners (N, 3, 3) where the rays from the eye meet the triangles."""
     edge_b, edge_c = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     plane = np.cross(edge_b, edge_c)
