@@ -41,7 +41,7 @@ def draws(function: Function, uniform: int = UNIFORM_COUNT, family: int = FAMILY
 def draw(function: Function, family: str, count: int, seed: int) -> Draw:
     """One set of inputs, the same for the same arguments; raises UserError for a function that reads maps."""
     if function.reads_textures:
-        raise UserError(f"{function.name} reads maps: conformance/execute/test_textures.py looks at it")
+        raise UserError(f"{function.name} reads maps: tests in conformance/execute look at it")
     inputs = cases.worst(function) if family == cases.WORST else cases.draw(function, family, count, seed)
     return Draw(family, count if family == "uniform" else length(inputs), seed, inputs)
 
