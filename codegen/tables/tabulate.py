@@ -83,14 +83,15 @@ def _narrowed(table: Table, function: Evaluated, budget: float) -> Table:
 def made(x: Axis, y: Axis, function: Evaluated, width: int, height: int) -> Table:
     """A table of the size, with its largest measured error."""
     a, b = np.meshgrid(x.value(np.linspace(0.0, 1.0, width)), y.value(np.linspace(0.0, 1.0, height)))
-    values = _finite(function, x, y)(a.ravel(), b.ravel()).reshape(height, width).astype(np.float32)
+    finite = _finite(function, x, y)
+    values = finite(a.ravel(), b.ravel()).reshape(height, width).astype(np.float32)
     table = Table(x, y, values, 0.0)
     a, b = np.meshgrid(x.value(_places(width)), y.value(_places(height)))
     worst = 0.0
     for rows_a, rows_b in zip(np.array_split(a, 16), np.array_split(b, 16), strict=True):
         flat_a, flat_b = rows_a.ravel(), rows_b.ravel()
         if flat_a.size:
-            worst = max(worst, float(np.abs(table.value(flat_a, flat_b) - function(flat_a, flat_b)).max()))
+            worst = max(worst, float(np.abs(table.value(flat_a, flat_b) - finite(flat_a, flat_b)).max()))
     return replace(table, error=worst)
 
 

@@ -72,6 +72,8 @@ class Processes:
                     try:
                         future = pool.submit(perform, waiting[0])
                     except BrokenProcessPool:
+                        if not under_way:
+                            return died  # an idle process died: another pool goes on
                         break  # what is under way will say so
                     under_way[future] = waiting.popleft()
                 finished, _ = wait(under_way, return_when=FIRST_COMPLETED)

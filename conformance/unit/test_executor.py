@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor as Pool
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from conformance.executor import Here, Job, Processes, Result, open_executor
+from conformance.executor import Here, Job, Processes, Result, local, open_executor
 
 ECHO = "conformance.executor.jobs:echo"
 
@@ -57,6 +59,31 @@ def test_a_process_that_dies_loses_nothing(tmp_path: Path) -> None:
     assert len(answers) == 6
     assert answers[fatal.identity] == ({"sum": 10, "target": "numpy"}, "")
     assert all(not error for _, error in answers.values())
+
+
+class BreaksWhenIdle(Pool):
+    """A pool whose process died between two jobs: it takes no more. Every second one is whole."""
+
+    opened = refused = 0
+
+    def __init__(self, *_: Any, **__: Any) -> None:
+        type(self).opened += 1
+        self.broken = self.opened % 2 == 1
+        super().__init__(max_workers=1)
+
+    def submit(self, *call: Any, **named: Any) -> Any:
+        if self.broken:
+            type(self).refused += 1
+            assert self.refused < 100, "a broken pool is asked for ever"
+            raise BrokenProcessPool
+        return super().submit(*call, **named)
+
+
+def test_a_process_that_dies_while_idle_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(local, "ProcessPoolExecutor", BreaksWhenIdle)
+    jobs = [Job("conformance.executor.jobs:echo", "f", "numpy", 0, k + 1) for k in range(3)]
+    assert {r.job: r.data for r in Processes(1).run(jobs)} == {r.job: r.data for r in Here().run(jobs)}
+    assert (BreaksWhenIdle.opened, BreaksWhenIdle.refused) == (2, 1)
 
 
 def test_options_choose_the_executor() -> None:

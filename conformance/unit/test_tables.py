@@ -20,6 +20,9 @@ from codegen.tables.stored import read_angle_table
 from codegen.tables.tabulate import made, tabulate
 from conformance.unit.support.tolerances import tolerance
 
+HOLE = 1e-4
+"""Half the width of a hole in a function, small against the cells of a table."""
+
 
 @pytest.mark.parametrize("warp", ["linear", "angle", "root", "log"])
 def test_warps_are_undone(warp: str) -> None:
@@ -46,6 +49,16 @@ def test_a_bilinear_function_needs_the_smallest_table() -> None:
 def test_a_square_root_at_the_end_picks_the_warp_that_straightens_it() -> None:
     table = tabulate(Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0), lambda a, b: np.sqrt(a) + b, 1e-6)
     assert (table.x.warp, table.y.warp) == ("root", "linear")
+
+
+def test_a_value_that_is_missing_between_texels_is_no_error_of_zero() -> None:
+    hole = 0.25 / 7.0  # a quarter of the first of seven cells: no texel lies there, but a point of measure
+
+    def holed(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return np.asarray(np.where(np.abs(a - hole) < HOLE, np.nan, 0.0) + b)
+
+    with pytest.raises(UserError, match=r"the function is nan at x = 0\.0357"):
+        tabulate(Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0), holed, 1e-3)
 
 
 def test_the_sides_differ_where_the_function_does() -> None:
