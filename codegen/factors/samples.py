@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zipfile
 import zlib
 from dataclasses import dataclass
@@ -92,7 +93,8 @@ def _arrays(path: Path) -> tuple[Array, Array, Array]:
     except (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error) as e:
         reason = (str(e) or "it is damaged").splitlines()[0]
         raise UserError(f"{path.name}: not a readable .npz file: {reason}") from None
-    return l, v, value.reshape(len(value), -1) if value.ndim else value.reshape(1, 1)
+    value = np.atleast_1d(value)
+    return l, v, value.reshape(len(value), math.prod(value.shape[1:]))
 
 
 def _checked(path: Path, l: Array, v: Array, value: Array) -> Samples:

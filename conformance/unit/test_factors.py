@@ -138,6 +138,15 @@ def cut(path: Path) -> Path:
     return path
 
 
+@pytest.mark.parametrize("shape", [(0,), (0, 3), (1,)])
+def test_a_file_without_samples_is_refused(tmp_path: Path, shape: tuple[int, ...]) -> None:
+    rows = shape[0]
+    l = np.tile([0.0, 0.0, 1.0], (rows, 1))
+    np.savez(tmp_path / "few.npz", l=l, v=l, value=np.ones(shape))
+    with pytest.raises(UserError, match=f"few.npz: {rows} samples have a value above 0; a fit needs 100"):
+        read_samples(tmp_path / "few.npz")
+
+
 def test_what_holds_no_samples_gets_one_sentence(tmp_path: Path) -> None:
     header = "l.x,l.y,l.z,v.x,v.y,v.z,value"
     good = ["0,0,1,0,0,1,1"] * 200
