@@ -19,7 +19,10 @@ Integers = npt.NDArray[np.int64]
 
 LARGEST_FILE = 1 << 29
 """Bytes; a text file of a million triangles has a fifth of that."""
-MOST_TRIANGLES = 1 << 20
+MOST_TRIANGLES = 1 << 17
+"""In a file: cutting more into charts takes minutes."""
+MOST_SUBDIVIDED = 1 << 19
+"""Drawn: the fins of more would not fit the 256 MiB that WebGPU promises for a buffer."""
 FARTHEST = 1.0e3
 """Coordinates up to which shell_offset declares its error."""
 FLATTEST = 1.0e-12
@@ -91,7 +94,8 @@ def read_surface(path: Path, channels: tuple[str, str] = ("", "")) -> Surface:
         )
     given = len(mesh.vertices)
     colours = _paint(path, mesh, channels)
-    welded, place = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    # Adding 0 turns -0 into 0: one place, one vertex.
+    welded, place = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)
     faces = place.reshape(-1)[mesh.faces]
     kept = _sound(welded, faces)
     if not kept.any():
@@ -134,8 +138,8 @@ def subdivided(surface: Surface, corners: Doubles, rounds: int) -> tuple[Surface
     """
     mesh_package = require_trimesh()
     for _ in range(rounds):
-        if 4 * len(surface.triangles) > MOST_TRIANGLES:
-            raise UserError(f"subdivide = {rounds} makes more than {MOST_TRIANGLES} triangles")
+        if 4 * len(surface.triangles) > MOST_SUBDIVIDED:
+            raise UserError(f"subdivide = {rounds} makes more than {MOST_SUBDIVIDED} triangles")
         edges = np.sort(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
         if np.unique(edges, axis=0, return_counts=True)[1].max() > 2:
             raise UserError("a mesh with an edge between more than two triangles needs subdivide = 0")

@@ -125,6 +125,12 @@ def test_an_open_mesh_keeps_the_fins_of_its_border(tmp_path: Path) -> None:
     assert opposed.sum() == 4  # fin_opacity_silhouette is then 1 from everywhere
 
 
+def test_negative_zero_is_zero(tmp_path: Path) -> None:
+    text = SQUARE.replace("f 1 3 4", "v -0.0 -0.0 -0.0\nv 1 1 -0.0\nf 5 6 4")
+    mesh = grow(written(tmp_path, text), spacing=0.1)
+    assert mesh.findings["border edges"] == 4 and len(np.unique(mesh.vertices["position"], axis=0)) == 4
+
+
 def test_a_crowded_edge_has_one_fin(tmp_path: Path) -> None:
     mesh = grow(written(tmp_path, THREE_AT_AN_EDGE), spacing=0.1)
     assert mesh.findings["edges between more than two triangles"] == 1
@@ -234,6 +240,11 @@ def test_a_mesh_may_not_be_huge(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("codegen.fur.surface.MOST_TRIANGLES", 1)
     with pytest.raises(UserError, match="has 2 triangles, more than 1; simplify it first"):
         grow(written(tmp_path, SQUARE), spacing=0.1)
+    monkeypatch.setattr("codegen.fur.surface.MOST_TRIANGLES", 2)
+    monkeypatch.setattr("codegen.fur.surface.MOST_SUBDIVIDED", 8)
+    assert grow(written(tmp_path, SQUARE), spacing=0.1, subdivide=1).findings["triangles"] == 8
+    with pytest.raises(UserError, match="subdivide = 2 makes more than 8 triangles"):
+        grow(written(tmp_path, SQUARE), spacing=0.1, subdivide=2)
     monkeypatch.setattr("codegen.fur.surface.LARGEST_FILE", 10)
     with pytest.raises(UserError, match="is larger than"):
         grow(written(tmp_path, SQUARE), spacing=0.1)
