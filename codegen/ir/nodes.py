@@ -345,7 +345,8 @@ def map_body(body: tuple[Stmt, ...], change: Callable[[Expr], Expr]) -> tuple[St
                 limit = None if s.limit is None else map_expr(s.limit, change)
                 return replace(s, limit=limit, body=map_body(s.body, change))
             case _:
-                return replace(s, value=map_expr(s.value, change))
+                value = map_expr(s.value, change)
+                return s if value is s.value else replace(s, value=value)
 
     return tuple(statement(s) for s in body)
 

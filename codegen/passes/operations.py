@@ -8,6 +8,7 @@ compare     comparisons
 
 from __future__ import annotations
 
+import functools
 from collections import Counter
 from collections.abc import Callable, Mapping
 
@@ -71,7 +72,8 @@ def _counted(
     return counts
 
 
-def expression_operations(e: ir.Expr) -> dict[str, int]:
+@functools.lru_cache(1 << 16)
+def expression_operations(e: ir.Expr) -> Mapping[str, int]:
     """Operations by class of one node, its operands left out."""
     if isinstance(e, ir.Select):
         return {"select": e.type.size if isinstance(e.type, Vector) else 1}
@@ -83,9 +85,10 @@ def expression_operations(e: ir.Expr) -> dict[str, int]:
     for cost, n in _registered_operations(e).items():
         if cost != "free":
             found["arithmetic" if cost in _ARITHMETIC else "special"] += n
-    return dict(found)
+    return found
 
 
+@functools.lru_cache(1 << 16)
 def _registered_operations(e: ir.Expr) -> Mapping[str, int]:
     """Scalar operations of one node by the registry's cost classes; none for what has no row there."""
     if not isinstance(e, ir.Unary | ir.Binary | ir.Builtin):

@@ -2,8 +2,8 @@
 
 Plan. Each form of codegen.scene.loosen is applied to the function of the dense coat that is timed beside
 hand-written ones, the gathering of constants to a function made for it; in float64 values agree before and
-after. Together they take the dense coat to half the general function's operations. Each term that a search may
-replace has two variants at least of fewer operations, with declared errors.
+after. Together they take the dense coat to half the general function's operations. Each term that a search
+may replace has two variants at least of fewer operations, with declared errors.
 """
 
 from __future__ import annotations
