@@ -87,21 +87,24 @@ def level_half(inputs: Inputs) -> Mask:
     return np.asarray(total <= 4.0 * ROUNDING * np.abs(real(inputs["v"])[..., 2]), dtype=np.bool_)
 
 
-def low_power(*exponents: Array) -> Mask:
-    """All exponents below 1 and not 0: the power rises from 0 with infinite slope."""
-    top = np.max(np.stack([real(p) for p in exponents]), axis=0)
-    return np.asarray((top > 0.0) & (top < 1.0), dtype=np.bool_)
+def low_power(inputs: Inputs, *exponents: str) -> Mask:
+    """The exponent is below 1 and not 0: the power rises from 0 with infinite slope.
+
+    Of two exponents, the one along the half vector counts.
+    """
+    if len(exponents) == 1:
+        found = real(inputs[exponents[0]])
+    else:
+        half = unit(inputs["l"]) + unit(inputs["v"])
+        found = lobes_half.shirley_exponent(half, *(inputs[name] for name in exponents))
+    return np.asarray((found > 0.0) & (found < 1.0), dtype=np.bool_)
 
 
 def half_density(*exponents: str) -> Callable[[Inputs], Mask]:
     """The density of a half-vector lobe h.z^p: undetermined at l = -v, a step at h.z = 0 for small p."""
 
     def predicate(inputs: Inputs) -> Mask:
-        step = (
-            low_power(*(inputs[name] for name in exponents))
-            if exponents
-            else np.zeros(len(inputs["l"]), np.bool_)
-        )
+        step = low_power(inputs, *exponents) if exponents else np.zeros(len(inputs["l"]), np.bool_)
         return np.asarray(undetermined_half(inputs) | (step & level_half(inputs)), dtype=np.bool_)
 
     return predicate

@@ -254,7 +254,6 @@ def test_literals_are_written_as_a_person_would(value: float) -> None:
     assert shortest(float(np.float32(value))) == WRITTEN[value]
 
 
-
 @pytest.mark.parametrize("dialect", ONE_PER_TARGET, ids=dialect_id)
 def test_float_literals_look_like_floats(dialect: Dialect) -> None:
     texts = [literal(ir.Const(F32, value), dialect) for value in sample_floats()]
