@@ -1,8 +1,8 @@
 """Which part of its stated domain a function declares no bound for: python -m conformance.check.coverage.
 
 Counted on the points of a check, without running anything: at random over the domain, and with the families
-of hard cases, which crowd about the places that bounds leave out. uncovered.json keeps the shares, UNCOVERED.md
-shows them.
+of hard cases, which crowd about the places that bounds leave out. uncovered.json keeps the shares, and
+UNCOVERED.md shows them.
 """
 
 from __future__ import annotations
@@ -69,9 +69,9 @@ def page(library: Library, found: dict[str, dict[str, Any]]) -> str:
         "",
         f"Written by `python -m conformance.check.coverage`. {len(whole)} of {len(library.public)} public "
         "functions declare bounds for their whole stated domain. The others leave out what is listed here: "
-        f"shares of {UNIFORM} points at random, and of these with {FAMILY} points of each family of hard cases. "
-        "What they return there must be finite and is judged by the specification's interval all the same; "
-        "only its error is no promise.",
+        f"shares of {UNIFORM} points at random, and of these with {FAMILY} points of each family of hard "
+        "cases. What they return there must be finite and is judged by the specification's interval all the "
+        "same; only its error is no promise.",
         "",
         "| function | at random | with hard cases | bounds hold for |",
         "|---|--:|--:|---|",

@@ -3,17 +3,44 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 import sys
+import time
 from pathlib import Path
+from typing import Any
 
 from conformance.mutation import record, report
-from conformance.mutation.plan import groups
+from conformance.mutation.isolated import SURVIVED
+from conformance.mutation.plan import excuse, groups
 from conformance.mutation.run import SEED, BaselineError, Result, all_jobs, run, sampled, tally
+from conformance.mutation.sites import Mutant
+
+
+class Kept:
+    """Outcomes in a file, so that what takes long can be done in pieces."""
+
+    def __init__(self, path: Path | None, resume: bool) -> None:
+        self.path = path
+        self.rows: list[dict[str, Any]] = []
+        if path is not None and resume and path.exists():
+            self.rows = json.loads(path.read_text(encoding="utf-8"))
+        self.found = {
+            (r["group"], str(m)): Result(m, r["outcome"], r["s"])
+            for r in self.rows
+            for m in [Mutant(**r["mutant"])]
+        }
+
+    def add(self, group: str, result: Result) -> None:
+        """Keep one more."""
+        mutant = dataclasses.asdict(result.mutant)
+        self.rows.append({"group": group, "mutant": mutant, "outcome": result.outcome, "s": result.seconds})
+        if self.path is not None:
+            self.path.write_text(json.dumps(self.rows, indent=1), encoding="utf-8")
 
 
 def main() -> int:
-    """Exit status 1 where a group misses its share, 2 where the tests fail without a mutant."""
+    """Exit status 1 where a group misses its share, 2 where the tests fail unmutated, 3 where time is up."""
     parser = argparse.ArgumentParser(prog="python -m conformance.mutation", description=__doc__)
     parser.add_argument(
         "groups", nargs="*", metavar="GROUP", help=f"of {', '.join(groups())}; all by default"
@@ -24,48 +51,50 @@ def main() -> int:
     parser.add_argument("--file", default="", help="only mutants of files whose path holds this")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--record", action="store_true", help="keep the draw in results.json and README.md")
-    parser.add_argument("--json", type=Path, help="write every outcome to this file")
+    parser.add_argument("--json", type=Path, help="write every outcome to this file, as it comes")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after this time")
+    parser.add_argument("--resume", action="store_true", help="go on with the outcomes of --json")
     given = parser.parse_args()
     unknown = [name for name in given.groups if name not in groups()]
     if unknown:
         parser.error(f"no group {', '.join(unknown)}")
+    if given.resume and not given.json:
+        parser.error("--resume goes on with a file: --json FILE")
+    ends = time.monotonic() + given.seconds
+    kept = Kept(given.json, given.resume)
     found: dict[str, list[Result]] = {}
-    missed = False
+    missed = unfinished = False
     for name in given.groups or groups():
         group = groups()[name]
         jobs = sampled(group, given.count or group.sample, given.seed) if given.sampled else all_jobs(group)
         jobs = [job for job in jobs if given.file in job[0].path]
+        done = [job for job in jobs if (name, str(job[1])) in kept.found and not excuse(job[1])]
+        results = [kept.found[name, str(mutant)] for _, mutant in done]
+        waiting = [job for job in jobs if job not in done]
 
-        def told(result: Result) -> None:
-            if result.outcome == "survived":
+        def told(result: Result, name: str = name) -> None:
+            kept.add(name, result)
+            if result.outcome == SURVIVED:
                 print(f"survived  {result.mutant}", flush=True)
 
         try:
-            found[name] = run(group, jobs, given.workers, told)
+            results += run(group, waiting, given.workers, told, ends)
         except BaselineError as e:
             print(f"{name}: {e}", file=sys.stderr)
             return 2
-        t = tally(found[name])
+        found[name] = results
+        t = tally(results)
         share = group.sampled_share if given.sampled else group.share
         missed |= t.share < share
+        unfinished |= len(results) < len(jobs)
         print(
-            f"{name}: {t.killed} killed, {t.survived} survived, {t.equivalent} equivalent, "
-            f"{t.refused} refused; {t.share:.1%} of {share:.0%}",
+            f"{name}: {len(results)} of {len(jobs)} tried: {t.killed} killed, {t.survived} survived, "
+            f"{t.equivalent} equivalent, {t.refused} refused; {t.share:.1%} of {share:.0%}",
             flush=True,
         )
-    if given.json:
-        rows = [
-            {
-                "group": name,
-                "mutant": str(r.mutant),
-                "key": r.mutant.key,
-                "outcome": r.outcome,
-                "s": r.seconds,
-            }
-            for name, results in found.items()
-            for r in results
-        ]
-        given.json.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+    if unfinished:
+        print("time is up; the same command with --resume goes on")
+        return 3
     if given.record and not given.file:
         for name, results in found.items():
             seed = given.seed if given.sampled else None

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 import random
-import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from multiprocessing import get_context
-from pathlib import Path
 
 from conformance.mutation.isolated import (
     KILLED,
     REFUSED,
+    ROOT,
     SURVIVED,
     TIMED_OUT,
     Change,
@@ -30,6 +30,8 @@ SEED = 20_260
 EQUIVALENT = "equivalent"
 TABLES_MODULE = "codegen.intervals.tables"
 """The module that reads the accuracy tables."""
+NOTES = ROOT / "build" / "mutation"
+"""Where it is kept which tests see what."""
 LEAST_LIMIT, SLOWER = 20.0, 10.0
 """A mutant may take so many seconds, and so many times as long as the tests do without it."""
 
@@ -43,7 +45,7 @@ class BaselineError(Exception):
 
 @dataclass(frozen=True)
 class Result:
-    """What came of one mutant: KILLED, SURVIVED, EQUIVALENT, TIMED_OUT or, in the library, REFUSED."""
+    """What came of one mutant: KILLED, SURVIVED, TIMED_OUT, EQUIVALENT (known, not tried) or REFUSED."""
 
     mutant: Mutant
     outcome: str
@@ -56,25 +58,26 @@ def all_jobs(group: Group) -> list[Job]:
 
 
 def sampled(group: Group, count: int, seed: int = SEED) -> list[Job]:
-    """A fixed sample; planted faults always belong to the oracle's."""
-    jobs = [job for job in all_jobs(group) if not excuse(job[1])]
+    """A fixed sample; which mutants are known to be equivalent does not change it."""
+    jobs = all_jobs(group)
     return random.Random(seed).sample(jobs, min(count, len(jobs)))
 
 
-def run(group: Group, jobs: Sequence[Job], workers: int, told: Told = lambda _: None) -> list[Result]:
-    """Try every mutant; `told` hears of each as it is done. Raises BaselineError."""
+def run(
+    group: Group,
+    jobs: Sequence[Job],
+    workers: int,
+    told: Told = lambda _: None,
+    ends: float = float("inf"),
+) -> list[Result]:
+    """Try mutants, none later than `ends` (time.monotonic()); `told` hears of each. Raises BaselineError."""
     trying = _try_shaders if group.name == "library" else _try_modules
-    results = []
-    for result in trying(group, jobs, workers):
+    known = [mutant for _, mutant in jobs if excuse(mutant)]
+    results = [Result(mutant, EQUIVALENT, 0.0) for mutant in known]
+    for result in trying(group, [job for job in jobs if not excuse(job[1])], workers, ends):
         results.append(result)
         told(result)
     return results
-
-
-def _settled(mutant: Mutant, outcome: str, seconds: float) -> Result:
-    """Survivors that are known to be equivalent are told apart."""
-    known = outcome == SURVIVED and excuse(mutant)
-    return Result(mutant, EQUIVALENT if known else outcome, seconds)
 
 
 @dataclass
@@ -100,16 +103,25 @@ def prepare(group: Group, subjects: Sequence[Subject]) -> dict[Subject, Prepared
     if warm_up(tests):
         raise BaselineError(f"{' '.join(tests)} cannot be collected")
     stale = {s: frozenset(dependants(module_of(s.path))) for s in subjects}
-    with tempfile.TemporaryDirectory() as folder:
-        notes = Path(folder) / "seen.json"
+    notes = NOTES / f"{_hash_of(tests, paths, group.without)}.json"
+    if not notes.exists():
+        NOTES.mkdir(parents=True, exist_ok=True)
         union = frozenset[str]().union(*stale.values())
         watched = Session(tests, union, without=group.without, watched=paths, notes=notes)
         trial = Trial(watched, Change(paths[0]), 20 * group.limit)
         if trial.wait() != SURVIVED:
+            notes.unlink(missing_ok=True)
             told = trial.output.decode(errors="replace")[-3000:]
             raise BaselineError(f"{' '.join(tests)} fail without a mutant:\n{told}")
-        seen = Seen.read(notes)
+    seen = Seen.read(notes)
     return {s: Prepared(Session(tests, stale[s], without=group.without), seen, s) for s in subjects}
+
+
+def _hash_of(tests: Sequence[str], paths: Sequence[str], without: Sequence[str]) -> str:
+    """Of the files and of the tests: while neither changes, what was seen of them stays true."""
+    files = [*paths, *dict.fromkeys(test.partition("::")[0] for test in tests)]
+    texts = [(ROOT / file).read_text(encoding="utf-8") for file in files]
+    return hashlib.sha256(repr([*tests, *paths, *without, *texts]).encode()).hexdigest()[:16]
 
 
 def module_of(path: str) -> str:
@@ -129,24 +141,30 @@ def attempt(group: Group, ready: Prepared, mutant: Mutant) -> Iterator[Trial]:
         yield Trial(others, change, ready.limit)
 
 
-def _try_modules(group: Group, jobs: Sequence[Job], workers: int) -> Iterator[Result]:
+def _try_modules(group: Group, jobs: Sequence[Job], workers: int, ends: float) -> Iterator[Result]:
     """Files with the same tests together, so that what their mutants share is prepared once."""
     together: dict[tuple[str, ...], list[Subject]] = {}
     for subject in dict.fromkeys(subject for subject, _ in jobs):
         together.setdefault(subject.tests, []).append(subject)
     for subjects in together.values():
+        if time.monotonic() > ends:
+            return
         ready = prepare(group, subjects)
         waiting = [job for job in jobs if job[0] in ready][::-1]
         running: list[_Running] = []
         while waiting or running:
+            if time.monotonic() > ends:
+                waiting = []
             while waiting and len(running) < workers:
                 subject, mutant = waiting.pop()
                 running.append(_Running(mutant, attempt(group, ready[subject], mutant)))
+            if not running:
+                break
             first = running.pop(0)
             if first.wait() == SURVIVED and first.go_on():
                 running.append(first)
             else:
-                yield _settled(first.mutant, first.outcome, first.seconds)
+                yield Result(first.mutant, first.outcome, first.seconds)
 
 
 class _Running:
@@ -171,17 +189,21 @@ class _Running:
         return self.outcome
 
 
-def _try_shaders(group: Group, jobs: Sequence[Job], workers: int) -> Iterator[Result]:
+def _try_shaders(group: Group, jobs: Sequence[Job], workers: int, ends: float) -> Iterator[Result]:
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        tasks = [(group, subject, mutant) for subject, mutant in jobs]
-        yield from pool.map(_try_shader, tasks, chunksize=4)
+        tasks = [(group, subject, mutant, ends) for subject, mutant in jobs]
+        yield from (result for result in pool.map(_try_shader, tasks) if result is not None)
 
 
-def _try_shader(task: tuple[Group, Subject, Mutant]) -> Result:
+def _try_shader(task: tuple[Group, Subject, Mutant, float]) -> Result | None:
     from conformance.mutation.shaders import judge
 
+    group, subject, mutant, ends = task
+    if time.monotonic() > ends:
+        return None
     started = time.perf_counter()
-    return _settled(task[2], judge(*task), time.perf_counter() - started)
+    outcome = judge(group, subject, mutant)
+    return Result(mutant, outcome, time.perf_counter() - started)
 
 
 @dataclass(frozen=True)

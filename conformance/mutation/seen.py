@@ -23,6 +23,17 @@ NEEDS_A_DEVICE = ("runtime", "target")
 """Fixtures that open a driver, which neither a fork does well nor a mutant of ours needs."""
 
 
+def opens_a_device(item: pytest.Item) -> bool:
+    """Whether a test takes one of these fixtures, and no parameter of its own by that name."""
+    fixtures = set(NEEDS_A_DEVICE) & set(getattr(item, "fixturenames", ()))
+    own = {name for mark in item.iter_markers("parametrize") for name in _names(mark.args[0])}
+    return bool(fixtures - own)
+
+
+def _names(given: str | Sequence[str]) -> list[str]:
+    return [name.strip() for name in given.split(",")] if isinstance(given, str) else list(given)
+
+
 class Selection:
     """A pytest plugin: leaves out tests that open devices, and runs the chosen ones alone, in that order.
 
@@ -40,7 +51,7 @@ class Selection:
         kept = [
             item
             for item in items
-            if not set(NEEDS_A_DEVICE) & set(getattr(item, "fixturenames", ()))
+            if not opens_a_device(item)
             and item.nodeid not in self.excluded
             and not item.nodeid.startswith(self.without or ("\0",))
             and (not self.rank or item.nodeid in self.rank)
@@ -109,7 +120,7 @@ class Seen:
 
 def function_around(text: str, line: int) -> tuple[int, int]:
     """First and last line of the innermost function that holds a line; of the whole file if none does."""
-    ends = [(1, text.count("\n") + 1)]
+    ends = [(0, text.count("\n") + 1)]
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.FunctionDef):
             first = min([node.lineno, *(d.lineno for d in node.decorator_list)])

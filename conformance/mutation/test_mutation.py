@@ -42,7 +42,7 @@ def outcomes(folder: Path, *arguments: str) -> list[dict[str, Any]]:
 @pytest.mark.parametrize("name", groups())
 def test_share_of_a_sample_is_killed(name: str, tmp_path: Path) -> None:
     rows = outcomes(tmp_path, "--sampled", name)
-    survivors = [row["mutant"] for row in rows if row["outcome"] == "survived"]
+    survivors = [str(Mutant(**row["mutant"])) for row in rows if row["outcome"] == "survived"]
     tried = [row for row in rows if row["outcome"] != "refused"]
     assert len(tried) >= groups()[name].sample * 3 // 4
     assert len(survivors) <= (1.0 - groups()[name].sampled_share) * len(tried), "\n".join(survivors)

@@ -8,6 +8,7 @@ Plan. Results are made by hand, so that every field has a value of its own.
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from typing import Any
 
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 
 from codegen.library import load_library
+from conformance.check.accuracy import Accuracy
 from conformance.check.engine import Backend, check_function, draw
 from conformance.check.failure import FINITE, PERMITTED, WITHIN
 from conformance.check.interval import IntervalResult
@@ -75,3 +77,31 @@ def test_results_come_back_from_json(error: float) -> None:
     found.seconds = again.seconds
     assert again == found
     assert again.as_data() == found.as_data()
+
+
+def test_every_field_comes_back_from_json() -> None:
+    """A field that is forgotten comes back as its default, so none has its default here."""
+    found = result(
+        backend="a backend",
+        stage="execute",
+        known={WITHIN: "why"},
+        lanes=70,
+        non_finite=1,
+        ambiguous=2,
+        uncovered=3,
+        seconds=1.5,
+        bounds=[BoundResult("b", 0.5, 0.25, 0.125, 0.0625, "an input", 9, 1)],
+        permitted=IntervalResult("glsl", lanes=9, inside=7, outside=1, rearranged=1, excess=2.5),
+        accuracy=[Accuracy("ULP", 0.5, 8, 4.0, 3.0, 2.0, "an input")],
+        broken="it stopped",
+        source="a hash",
+        emitted="another hash",
+    )
+    with_failures = {"failures", "program"}
+    for field in dataclasses.fields(found):
+        default = field.default_factory() if callable(field.default_factory) else field.default
+        assert field.name in with_failures or getattr(found, field.name) != default, field.name
+    data = json.loads(json.dumps(found.as_data()))
+    again = FunctionResult.from_data(data)
+    for field in dataclasses.fields(found):
+        assert getattr(again, field.name) == getattr(found, field.name), field.name
