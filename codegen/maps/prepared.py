@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.errors import UserError, unknown
+from codegen.ir.domains import number
 from codegen.maps import latlong, mipmap, octahedral, paraboloid, prefilter
 from codegen.maps.image import Pixels, exr
 from codegen.maps.radiance import read_radiance
@@ -90,10 +91,10 @@ def prepare(path: Path, settings: Settings, progress: Callable[[str], None] = la
     chain = levels(pixels, settings)
     images = {f"level_{k}.exr": level for k, level in enumerate(chain)}
     lobes = []
-    for exponent in settings.exponents:
-        progress(f"prefiltering exponent {exponent:g}")
+    for exponent in dict.fromkeys(settings.exponents):
+        progress(f"prefiltering exponent {number(exponent)}")
         discs = prefilter.prefilter(pixels, exponent, border=settings.border)
-        name = f"phong_{exponent:g}.exr"
+        name = f"phong_{number(exponent)}.exr"
         images[name] = np.concatenate(list(discs), axis=1)
         lobes.append({"exponent": exponent, "size": discs.shape[1], "file": name})
     height, width = pixels.shape[:2]

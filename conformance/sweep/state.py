@@ -16,7 +16,9 @@ class State:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._done: dict[tuple[str, str], dict[str, Any]] = {}
-        for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
+        text = path.read_text(encoding="utf-8") if path.exists() else ""
+        self._cut_short = bool(text) and not text.endswith("\n")
+        for line in text.splitlines():
             try:
                 entry = json.loads(line)
             except json.JSONDecodeError:
@@ -34,4 +36,5 @@ class State:
         self.path.parent.mkdir(parents=True, exist_ok=True)
         entry = {"source": source, "job": job.identity, "what": asdict(job), "data": result.data}
         with self.path.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(entry) + "\n")
+            file.write("\n" * self._cut_short + json.dumps(entry) + "\n")
+        self._cut_short = False

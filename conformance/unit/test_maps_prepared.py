@@ -45,6 +45,13 @@ def test_the_files_hold_what_the_description_says(sky: Path, tmp_path: Path) -> 
     assert all((again / name).read_bytes() == (out / name).read_bytes() for name in listed)
 
 
+def test_lobes_of_near_exponents_have_files_of_their_own(sky: Path) -> None:
+    found = prepare(sky, Settings(size=8, exponents=(12345.67, 12345.68, 12345.67)))
+    files = [lobe["file"] for lobe in found.manifest["prefiltered"]]
+    assert files == ["phong_12345.67.exr", "phong_12345.68.exr"]
+    assert set(files) <= set(found.images)
+
+
 def test_the_last_levels_hold_the_mean_of_each_half_of_the_sky(sky: Path) -> None:
     found = prepare(sky, Settings(size=64))
     s, t = paraboloid.points(64, paraboloid.BORDER)

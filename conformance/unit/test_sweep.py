@@ -103,6 +103,10 @@ def test_an_interrupted_sweep_goes_on(tmp_path: Path) -> None:
     assert [(job.task, job.start) for job in done] == [(TOGETHER, job.start) for job in jobs[4:]]
     assert not failed
     assert resumed == sweep(LIBRARY, where, jobs, Here())[0]
+    done.clear()
+    again, _ = sweep(LIBRARY, where, jobs, Counting(), State(path))
+    assert again == resumed
+    assert not done, "a piece done after the line that was cut short is remembered"
 
 
 def counted(monkeypatch: pytest.MonkeyPatch, where: Any, name: str) -> list[Any]:
