@@ -27,8 +27,8 @@ _ARITHMETIC = frozenset({"add", "multiply"})
 def operations(function: ir.Function, library: Library | None = None) -> dict[str, int]:
     """Operations by class of one evaluation; every class is there.
 
-    Both sides of branches count, and loop bodies once per iteration. What the function calls counts where a
-    library is given to look it up.
+    Both sides of branches count, and loop bodies once per iteration; of a loop that a parameter ends, one
+    iteration. What the function calls counts where a library is given to look it up.
     """
     return {**dict.fromkeys(CLASSES, 0), **_counted(function, library, expression_operations)}
 
@@ -64,7 +64,8 @@ def _counted(
                     block(s.then, times)
                     block(s.orelse, times)
                 case ir.For():
-                    block(s.body, times * max(s.stop - s.start, 0))
+                    known = isinstance(s.limit, ir.Const | None)
+                    block(s.body, times * (max(s.stop - s.start, 0) if known else 1))
                 case _:
                     tree(s.value, times)
 

@@ -19,6 +19,8 @@ EXPONENTS = (1.0, 10.0, 100.0, 1e3, 1e4)
 SHARES = (0.0, 0.3, 0.5, 1.0)
 HEIGHTS = (0.0, 1e-30, 1e-9, 1e-7, 1e-5, 1e-3, 0.02, 0.17, 0.18, 0.19)
 """How far above and below the rim to look: on it, within rounding, within a texel, where the border ends."""
+CLEAR = 0.185
+"""Height from which on one disc alone shows a direction, on every level: its border ends at 0.18."""
 
 
 def paraboloid(size: int, kind: str, seed: int) -> list[Level]:
