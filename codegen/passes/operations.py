@@ -73,23 +73,29 @@ def _counted(
     return counts
 
 
-@functools.lru_cache(1 << 16)
 def expression_operations(e: ir.Expr) -> Mapping[str, int]:
     """Operations by class of one node, its operands left out."""
     if isinstance(e, ir.Select):
         return {"select": e.type.size if isinstance(e.type, Vector) else 1}
-    if isinstance(e, ir.Binary) and e.op in _COMPARISONS:
+    if not isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
+        return {}
+    return _by_class(e.op, isinstance(e, ir.Builtin), _width(e))
+
+
+@functools.cache
+def _by_class(op: str, is_builtin: bool, width: int) -> Mapping[str, int]:
+    """Operations by class of an operator or a built-in at a width."""
+    if op in _COMPARISONS:
         return {"compare": 1}
-    if isinstance(e, ir.Builtin) and e.op == "clamp":
-        return {"arithmetic": 2 * _width(e)}
+    if op == "clamp":
+        return {"arithmetic": 2 * width}
     found: Counter[str] = Counter()
-    for cost, n in _registered_operations(e).items():
+    for cost, n in (BUILTINS if is_builtin else OPERATORS)[op].operations(width).items():
         if cost != "free":
             found["arithmetic" if cost in _ARITHMETIC else "special"] += n
     return found
 
 
-@functools.lru_cache(1 << 16)
 def _registered_operations(e: ir.Expr) -> Mapping[str, int]:
     """Scalar operations of one node by the registry's cost classes; none for what has no row there."""
     if not isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
