@@ -72,9 +72,15 @@ class Factors:
 
 @dataclass(frozen=True)
 class FitError:
-    """Errors against samples: root of the mean square over the mean, and relative errors, of all channels."""
+    """Errors against samples, of all channels.
+
+    rms     root of the mean square over the mean
+    seen    the same of value times l.z, what a shader adds up
+    median, p95, largest  relative errors
+    """
 
     rms: float
+    seen: float
     median: float
     p95: float
     largest: float
@@ -134,9 +140,11 @@ def error(factors: Factors, samples: Samples, floor: float = Settings.floor) -> 
     """
     known = samples.known()
     got = factors.value(known.l, known.v)
-    relative = np.abs(got - known.value) / np.maximum(known.value, floor * known.value.max())
+    off, cosine = got - known.value, known.l[:, 2:]
+    relative = np.abs(off) / np.maximum(known.value, floor * known.value.max())
     return FitError(
-        rms=float(np.sqrt(((got - known.value) ** 2).mean()) / known.value.mean()),
+        rms=float(np.sqrt((off**2).mean()) / known.value.mean()),
+        seen=float(np.sqrt(((off * cosine) ** 2).mean()) / (known.value * cosine).mean()),
         median=float(np.median(relative)),
         p95=float(np.quantile(relative, 0.95)),
         largest=float(relative.max()),

@@ -37,6 +37,11 @@ class Samples:
         kept = (np.isfinite(self.value) & (self.value > 0.0)).all(axis=1)
         return Samples(self.l[kept], self.v[kept], self.value[kept])
 
+    def above(self, height: float) -> Samples:
+        """Those of which light and viewer are at least that high above the surface, by their z."""
+        kept = (self.l[:, 2] >= height) & (self.v[:, 2] >= height)
+        return Samples(self.l[kept], self.v[kept], self.value[kept])
+
     def __len__(self) -> int:
         return len(self.value)
 

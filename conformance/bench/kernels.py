@@ -19,8 +19,9 @@ from codegen.emit.module import DEFAULT_PREFIX, emit
 from codegen.emit.stmt import StmtPrinter
 from codegen.execute import Words
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, I32, U32, Scalar, Struct, Type, Vector, leaves
+from codegen.ir.types import BOOL, F32, I32, TEXTURE, U32, Scalar, Struct, Type, Vector, leaves
 from codegen.ir.unit import Unit
+from codegen.kernels import TEXTURE_STEM
 from codegen.library import Library
 from codegen.passes.rename import add_prefix
 
@@ -65,7 +66,8 @@ def kernel(library: Library, name: str, target: str, mode: Mode, repeats: int = 
     selection = library.select([name])
     function = add_prefix(Unit(selection.functions, selection.structs), DEFAULT_PREFIX).functions[-1]
     lines = _Body(function, chosen, mode).lines(call=True, repeats=repeats)
-    return complete_program(target, emit(library, chosen, [name]), "\n".join(lines))
+    maps = [TEXTURE_STEM + p.name for p in library.function(name).parameters if p.type == TEXTURE]
+    return complete_program(target, emit(library, chosen, [name]), "\n".join(lines), textures=maps)
 
 
 def baseline(library: Library, name: str, target: str, mode: Mode, repeats: int = 1) -> str:
@@ -88,7 +90,8 @@ class _Body:
         self.function = function
         self.dialect = chosen
         self.mode = mode
-        self.inputs = [scalar for p in function.parameters for _, scalar in leaves(p.type)]
+        numbers = [p for p in function.parameters if p.type != TEXTURE]
+        self.inputs = [scalar for p in numbers for _, scalar in leaves(p.type)]
         results = [scalar for _, scalar in leaves(function.returns)]
         self.state = F32 if F32 in results else U32
 
@@ -135,7 +138,10 @@ class _Body:
         moved = [self._moved(k, scalar, suffix) for k, scalar in enumerate(self.inputs)]
         if call:
             supply = iter(moved)
-            arguments = tuple(_assemble(p.type, supply) for p in self.function.parameters)
+            arguments = tuple(
+                ir.Var(TEXTURE, TEXTURE_STEM + p.name) if p.type == TEXTURE else _assemble(p.type, supply)
+                for p in self.function.parameters
+            )
             result = f"value_{suffix}"
             yield ir.Let(result, ir.Call(self.function.returns, self.function.name, arguments))
             moved = _parts(ir.Var(self.function.returns, result))

@@ -25,10 +25,10 @@ from codegen.library import load_library
 from codegen.tables.arguments import two_arguments
 from codegen.tables.tabulate import made
 from conformance.check.features import applies
+from conformance.factored.published import SATIN, WATERLOO, cosine_weighted, viewer
 from conformance.reference import ambiguous, reference_for
 from conformance.textures.filtering import declared
 from conformance.unit.support.tolerances import tolerance
-from conformance.unit.support.waterloo import SATIN, WATERLOO, cosine_weighted, viewer
 from targets import TimedRuntime
 
 Array = npt.NDArray[Any]

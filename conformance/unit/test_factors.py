@@ -20,8 +20,8 @@ from codegen.factors.waterloo import read_waterloo, waterloo_files
 from codegen.library import load_library
 from codegen.maps.bilinear import lookup
 from codegen.maps.image import png
+from conformance.factored.published import SATIN, WATERLOO, cosine_weighted, viewer
 from conformance.unit.support.tolerances import tolerance
-from conformance.unit.support.waterloo import SATIN, WATERLOO, cosine_weighted, viewer
 
 EXACT = tolerance("exact_interpolation")
 
@@ -68,6 +68,25 @@ def test_what_is_a_product_of_factors_is_found_again() -> None:
     # What is left: the pull of the smoothness, and logarithms that are interpolated in place of values.
     assert error(found, fresh).p95 <= tolerance("half_vector_fit")
     assert np.abs(found.value(l, v) - found.value(v, l)).max() <= EXACT
+
+
+def test_errors_are_of_values_and_of_what_is_seen() -> None:
+    """A tenth too much of a constant: a tenth of the value, and of its product with the cosine."""
+    constant = Factors(np.array([1.1]), np.ones((4, 4, 1)), np.ones((4, 4, 1)))
+    l, v = directions(20_000, seed=11)
+    samples = Samples(l, v, np.ones((len(l), 1)))
+    found, inner = error(constant, samples), error(constant, samples.above(0.5))
+    assert abs(found.rms - 0.1) <= EXACT and abs(found.largest - 0.1) <= EXACT
+    cosine = np.sqrt((l[:, 2] ** 2).mean()) / l[:, 2].mean()
+    assert abs(found.seen - 0.1 * cosine) <= EXACT
+    assert len(samples.above(0.5)) == ((l[:, 2] >= 0.5) & (v[:, 2] >= 0.5)).sum() == inner.samples
+
+
+def test_emphasis_lowers_the_error_of_what_is_seen() -> None:
+    """The strand's lobe does not factor: what is left lies where the weights allow it."""
+    drawn = draw_samples(load_library(), "strand_specular", {"exponent": 8.0}, 4000, diffuse=0.1)
+    plain, leaning = (error(factorise(drawn, Settings(8, 16, emphasis=e)), drawn) for e in (0.0, 1.0))
+    assert leaning.seen < plain.seen and leaning.median > plain.median
 
 
 def test_missing_samples_are_left_out() -> None:
