@@ -6,6 +6,7 @@ Definitions of reference/lobes.md section 4: latitude-longitude texels with thei
 
 from __future__ import annotations
 
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,11 @@ class Environment:
         weights = paraboloid.solid_angles(size, border) if weighted else None
         chains = [mipmap.chain(disc, weights) for disc in paraboloid.from_latlong(pixels, size, border)]
         self.levels = [np.stack(pair) for pair in zip(*chains, strict=True)]
+
+    @cached_property
+    def halved(self) -> list[Array]:
+        """The latitude-longitude map at every size, weighted by solid angle."""
+        return mipmap.by_solid_angle(self.pixels)
 
     @classmethod
     def read(cls, path: Path, *, weighted: bool = False) -> Environment:

@@ -7,11 +7,12 @@ count.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from codegen.maps import latlong, mipmap
+from codegen.maps import latlong
 from conformance.light.environment import Environment, MapSampler
 from conformance.light.lobes import Lobe, View
 from conformance.reference.maps import lod_from_pdf, mis_balance, mis_power
@@ -44,7 +45,7 @@ def grid(environment: Environment, view: View, lobe: Lobe, rows: int, *, weighte
 
     weighted  False leaves the solid angles out, as the lecture does: every direction counts alike
     """
-    image = mipmap.reduced(environment.pixels, rows)
+    image = next(level for level in environment.halved if level.shape[0] <= rows)
     directions = latlong.directions(*image.shape[:2]).reshape(-1, 3)
     angles = np.repeat(latlong.solid_angles(*image.shape[:2]), image.shape[1])
     if not weighted:
@@ -53,28 +54,66 @@ def grid(environment: Environment, view: View, lobe: Lobe, rows: int, *, weighte
     return np.stack([lobe.value(view.to_local(k, directions), view.v[k]) @ energy for k in range(len(view))])
 
 
+@dataclass(frozen=True)
+class Samples:
+    """Samples of a lobe at n places: world directions (n, m, 3), densities and values over these (n, m)."""
+
+    world: Array
+    pdf: Array
+    weight: Array
+
+    @property
+    def count(self) -> int:
+        """How many at each place."""
+        return int(self.pdf.shape[1])
+
+
+def drawn(view: View, lobe: Lobe, u: Array) -> Samples:
+    """The lobe's samples for points u: (m, 2) for every place, or (n, m, 2) for each its own."""
+    pairs = np.broadcast_to(u, (len(view), *u.shape[-2:]))
+    local = lobe.sample(pairs, view.v[:, None, :])
+    pdf, value = lobe.pdf(local, view.v[:, None, :]), lobe.value(local, view.v[:, None, :])
+    weight = np.where(pdf > 0.0, value / np.where(pdf > 0.0, pdf, 1.0), 0.0)
+    return Samples(view.to_world(local), pdf, weight)
+
+
+def peak(view: View, lobe: Lobe) -> Samples:
+    """The sample at the lobe's peak, where it lies densest."""
+    return drawn(view, lobe, np.zeros((1, 2)))
+
+
+def mean(environment: Environment, samples: Samples, lod: npt.ArrayLike = 0.0) -> Array:
+    """The mean of weighted radiance over the samples of each place."""
+    return np.asarray((environment.radiance(samples.world, lod) * samples.weight[..., None]).mean(axis=1))
+
+
+def levels(environment: Environment, samples: Samples, count: int, bias: float = 0.0) -> Array:
+    """The level whose texels are as large as a sample's share of the lobe, one of `count` samples."""
+    texels = environment.texel_solid_angle(samples.world[..., 2])
+    return lod_from_pdf(samples.pdf, count, texels, bias)
+
+
+def guarded_levels(environment: Environment, samples: Samples, densest: Samples) -> Array:
+    """The same, but 0 at places where a sample at the lobe's peak would look up less than level SHARP."""
+    lowest = levels(environment, densest, samples.count)
+    return np.where(lowest < SHARP, 0.0, levels(environment, samples, samples.count))
+
+
 def plain(environment: Environment, view: View, lobe: Lobe, u: Array) -> Array:
     """Importance sampling of the lobe at the largest level: unbiased but for the map's resampling."""
-    world, _, weight = _samples(view, lobe, u)
-    return np.asarray((environment.radiance(world) * weight[..., None]).mean(axis=1))
+    return mean(environment, drawn(view, lobe, u))
 
 
 def filtered(environment: Environment, view: View, lobe: Lobe, u: Array, bias: float = 0.0) -> Array:
     """Colbert and Krivanek 2007: each sample looks up the level whose texel is as large as its share."""
-    world, pdf, weight = _samples(view, lobe, u)
-    lod = lod_from_pdf(pdf, u.shape[-2], environment.texel_solid_angle(world[..., 2]), bias)
-    return np.asarray((environment.radiance(world, lod) * weight[..., None]).mean(axis=1))
+    samples = drawn(view, lobe, u)
+    return mean(environment, samples, levels(environment, samples, samples.count, bias))
 
 
 def guarded(environment: Environment, view: View, lobe: Lobe, u: Array) -> Array:
     """Filtered, but plain where a sample at the lobe's peak would look up less than level SHARP."""
-    count = u.shape[-2]
-    peak, densest, _ = _samples(view, lobe, np.zeros((1, 2)))
-    lowest = lod_from_pdf(densest, count, environment.texel_solid_angle(peak[..., 2]), 0.0)
-    world, pdf, weight = _samples(view, lobe, u)
-    lod = lod_from_pdf(pdf, count, environment.texel_solid_angle(world[..., 2]), 0.0)
-    lod = np.where(lowest < SHARP, 0.0, lod)
-    return np.asarray((environment.radiance(world, lod) * weight[..., None]).mean(axis=1))
+    samples = drawn(view, lobe, u)
+    return mean(environment, samples, guarded_levels(environment, samples, peak(view, lobe)))
 
 
 def combined(
@@ -89,18 +128,32 @@ def combined(
 ) -> Array:
     """Samples of the lobe and of the map together, by the balance or power heuristic, unfiltered.
 
-    The map's samples are the same for every view, so an engine can bake them.
-
     u       (n, 2) points of the lobe's samples, or as many for each view; none: the map's alone
     others  (m, 2) points of the map's samples; none: plain importance sampling of the lobe
     """
-    ours, theirs = u.shape[-2], len(others)
+    return together(environment, view, lobe, drawn(view, lobe, u), others, sampler, power=power)
+
+
+def together(
+    environment: Environment,
+    view: View,
+    lobe: Lobe,
+    own: Samples,
+    others: Array,
+    sampler: MapSampler,
+    *,
+    power: bool = False,
+) -> Array:
+    """The same with samples of the lobe that are drawn already.
+
+    The map's samples are the same for every view, so an engine can bake them.
+    """
+    ours, theirs = own.count, len(others)
     share_of = mis_power if power else mis_balance
     total = np.zeros((len(view), 3))
     if ours:
-        world, pdf, weight = _samples(view, lobe, u)
-        share = share_of(ours, pdf, theirs, sampler.pdf(world))
-        total += (environment.radiance(world) * (weight * share)[..., None]).mean(axis=1)
+        share = share_of(ours, own.pdf, theirs, sampler.pdf(own.world))
+        total += mean(environment, replace(own, weight=own.weight * share))
     if theirs:
         world = sampler.sample(others)
         local = np.stack([view.to_local(k, world) for k in range(len(view))])
@@ -116,17 +169,6 @@ def halves(count: int) -> tuple[Array, Array]:
     """Points for that many samples in all, half of the lobe and half of the map."""
     ours = max(count // 2, 1)
     return sequence(ours), sequence(max(count - ours, 1))
-
-
-def _samples(view: View, lobe: Lobe, u: Array) -> tuple[Array, Array, Array]:
-    """World directions (n, m, 3), densities (n, m) and weights value / density (n, m).
-
-    u  (m, 2) points for every view, or (n, m, 2) for each its own
-    """
-    pairs = np.broadcast_to(u, (len(view), *u.shape[-2:]))
-    local = lobe.sample(pairs, view.v[:, None, :])
-    pdf, value = lobe.pdf(local, view.v[:, None, :]), lobe.value(local, view.v[:, None, :])
-    return view.to_world(local), pdf, np.where(pdf > 0.0, value / np.where(pdf > 0.0, pdf, 1.0), 0.0)
 
 
 def rms(estimate: Array, truth: Array) -> float:

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from codegen.maps.radiance import read_radiance
 from conformance.light import estimators, plan, prefiltered
 from conformance.light.environment import Environment, MapSampler
-from conformance.light.lobes import Lobe, View
+from conformance.light.estimators import Samples
+from conformance.light.lobes import Lobe
 from conformance.light.plan import Plan
 
 Array = npt.NDArray[np.float64]
@@ -49,8 +50,32 @@ def truths(chosen: Plan, lobe: Lobe, maps: Mapping[str, Environment]) -> dict[st
     return dict(zip(maps, parts, strict=True))
 
 
+@dataclass(frozen=True)
+class Drawn:
+    """A lobe's samples, which serve every map: by their number, half as many, with many shifts; the peak."""
+
+    whole: dict[int, Samples]
+    half: dict[int, Samples]
+    shifted: dict[int, Samples]
+    peak: Samples
+
+
+def drawn(chosen: Plan, lobe: Lobe) -> Drawn:
+    """The samples of a plan."""
+    view, many = plan.repeated(chosen), replace(chosen, shifts=AVERAGED)
+    whole = {n: estimators.drawn(view, lobe, plan.points(chosen, n)) for n in chosen.counts}
+    half = {
+        n: whole.get(n // 2) or estimators.drawn(view, lobe, plan.points(chosen, n // 2))
+        for n in chosen.counts
+    }
+    # Of so many samples that fewer shifts than samples are averaged, and the noise of the mean is small.
+    few = [n for n in chosen.counts if n <= max(chosen.counts) // 8]
+    shifted = {n: estimators.drawn(plan.repeated(many), lobe, plan.points(many, n)) for n in few}
+    return Drawn(whole, half, shifted, estimators.peak(view, lobe))
+
+
 def curves(
-    chosen: Plan, lobe: Lobe, here: Environment, sampler: MapSampler, truth: Array
+    chosen: Plan, lobe: Lobe, here: Environment, sampler: MapSampler, truth: Array, samples: Drawn
 ) -> dict[str, Curve]:
     """Every estimator's errors in float64.
 
@@ -58,46 +83,40 @@ def curves(
     """
     view, right = plan.repeated(chosen), np.repeat(truth, chosen.shifts, axis=0)
 
-    def combined(here: Environment, view: View, lobe: Lobe, u: Array) -> Array:
-        ours, theirs = estimators.halves(u.shape[-2])
-        own = plan.points(chosen, len(ours))
-        return estimators.combined(here, view, lobe, own, theirs, sampler)
+    def combined(n: int) -> Array:
+        _, others = estimators.halves(n)
+        return estimators.together(here, view, lobe, samples.half[n], others, sampler)
 
-    by_points: dict[str, Callable[..., Array]] = {
-        "monte_carlo": estimators.plain,
-        "filtered": estimators.filtered,
-        "guarded": estimators.guarded,
-        HOST_SIDE: combined,
+    ways: dict[str, Callable[[int, Samples], Array]] = {
+        "monte_carlo": lambda n, s: estimators.mean(here, s),
+        "filtered": lambda n, s: estimators.mean(here, s, estimators.levels(here, s, n)),
+        "guarded": lambda n, s: estimators.mean(here, s, estimators.guarded_levels(here, s, samples.peak)),
+        HOST_SIDE: lambda n, s: combined(n),
     }
-    found = {}
-    for name, estimate in by_points.items():
-        errors = [
-            estimators.rms(estimate(here, view, lobe, plan.points(chosen, count)), right)
-            for count in chosen.counts
-        ]
+    found = {"grid": _grid(chosen, lobe, here, truth)}
+    for name, estimate in ways.items():
+        errors = [estimators.rms(estimate(n, s), right) for n, s in samples.whole.items()]
         found[name] = Curve(chosen.counts, tuple(errors))
-    found = {"grid": _grid(chosen, lobe, here, truth), **found, BIAS: _bias(chosen, lobe, here, truth)}
+    found[BIAS] = _bias(chosen, here, truth, samples)
     exponent = prefiltered.exponent_of(lobe)
     if exponent is not None:
         found[prefiltered.NAME] = _prefiltered(chosen, lobe, prefiltered.convolved(here, exponent), truth)
     return found
 
 
+def _bias(chosen: Plan, here: Environment, truth: Array, samples: Drawn) -> Curve:
+    """The error of the mean over many shifts of the filtered estimator's points."""
+    errors = []
+    for n, s in samples.shifted.items():
+        estimate = estimators.mean(here, s, estimators.levels(here, s, n))
+        errors.append(estimators.rms(estimate.reshape(chosen.views, AVERAGED, 3).mean(axis=1), truth))
+    return Curve(tuple(samples.shifted), tuple(errors))
+
+
 def _prefiltered(chosen: Plan, lobe: Lobe, convolved: Environment, truth: Array) -> Curve:
     view = plan.frames(chosen)
     estimate = convolved.radiance(prefiltered.directions(view, lobe)) * prefiltered.scale(view, lobe)
     return Curve((1,), (estimators.rms(estimate, truth),))
-
-
-def _bias(chosen: Plan, lobe: Lobe, here: Environment, truth: Array) -> Curve:
-    """The error of the mean over many shifts; of so many samples that the shifts number fewer of them."""
-    many = replace(chosen, shifts=AVERAGED)
-    view, counts = plan.repeated(many), tuple(n for n in chosen.counts if n <= max(chosen.counts) // 8)
-    errors = []
-    for count in counts:
-        estimate = estimators.filtered(here, view, lobe, plan.points(many, count))
-        errors.append(estimators.rms(estimate.reshape(chosen.views, AVERAGED, 3).mean(axis=1), truth))
-    return Curve(counts, tuple(errors))
 
 
 def _grid(chosen: Plan, lobe: Lobe, here: Environment, truth: Array) -> Curve:

@@ -109,6 +109,8 @@ def _of_lobe(chosen: Plan, lobe: Lobe) -> tuple[dict[str, Array], dict[str, dict
     """Quadratures and curves by map."""
     maps, samplers = _maps(chosen)
     truth = modelled.truths(chosen, lobe, maps)
+    samples = modelled.drawn(chosen, lobe)
     return truth, {
-        name: modelled.curves(chosen, lobe, here, samplers[name], truth[name]) for name, here in maps.items()
+        name: modelled.curves(chosen, lobe, here, samplers[name], truth[name], samples)
+        for name, here in maps.items()
     }

@@ -73,7 +73,7 @@ def test_viewers_stand_above_the_surface_and_points_lie_in_the_square() -> None:
 def test_curves_of_a_small_plan_are_whole(lobe: Lobe) -> None:
     here = sky()
     truth = modelled.truths(SMALL, lobe, {"dawn": here})["dawn"]
-    found = modelled.curves(SMALL, lobe, here, MapSampler(here), truth)
+    found = modelled.curves(SMALL, lobe, here, MapSampler(here), truth, modelled.drawn(SMALL, lobe))
     wanted = {*emitted.BY_LOBE, modelled.HOST_SIDE, modelled.BIAS}
     assert set(found) - {prefiltered.NAME} == wanted
     assert (prefiltered.NAME in found) == (prefiltered.exponent_of(lobe) is not None)
