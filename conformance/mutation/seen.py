@@ -120,7 +120,7 @@ class Seen:
 
 def function_around(text: str, line: int) -> tuple[int, int]:
     """First and last line of the innermost function that holds a line; of the whole file if none does."""
-    ends = [(0, text.count("\n") + 1)]
+    ends = [(0, len(text.splitlines()))]
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.FunctionDef):
             first = min([node.lineno, *(d.lineno for d in node.decorator_list)])

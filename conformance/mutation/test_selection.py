@@ -1,0 +1,145 @@
+"""Which tests a mutant meets first, and what is changed in a table.
+
+Plan.
+  functions  the innermost function around a line, decorators included; the whole file outside of all
+  order      the tests that call a function, quickest first; tests that open devices are left out, tests with
+             a parameter by a fixture's name are not
+  tables     a mutant is one row changed, and another table as far as it is read
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from codegen.errors import UserError
+from codegen.intervals.tables import FOLDER, TABLES, read_table
+from conformance.mutation import table_rules
+from conformance.mutation.record import FILE_COLUMNS, draw_of
+from conformance.mutation.report import overview
+from conformance.mutation.run import Result
+from conformance.mutation.seen import Seen, Watch, function_around
+from conformance.mutation.sites import Mutant
+
+pytest_plugins = ["pytester"]
+
+TEXT = """A = 1
+
+
+@decorated
+def outer(x):
+    def inner(y):
+        return y
+
+    return inner(x)
+
+
+def other():
+    return A
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "ends"), [(1, (0, 13)), (4, (4, 9)), (7, (6, 7)), (9, (4, 9)), (13, (12, 13)), (0, (0, 13))]
+)
+def test_function_around_a_line(line: int, ends: tuple[int, int]) -> None:
+    assert function_around(TEXT, line) == ends
+
+
+def test_tests_that_see_a_function_come_quickest_first() -> None:
+    seen = Seen(
+        {
+            "slow": {"s": 3.0, "calls": {"a.py": [4, 6]}},
+            "quick": {"s": 1.0, "calls": {"a.py": [6]}},
+            "elsewhere": {"s": 0.5, "calls": {"a.py": [12]}},
+            "blind": {"s": 0.1, "calls": {"b.py": [4]}},
+        }
+    )
+    assert seen.by("a.py", TEXT, 7) == ["quick", "slow"]
+    assert seen.by("a.py", TEXT, 13) == ["elsewhere"]
+    assert seen.by("a.py", TEXT, 1) == ["elsewhere", "quick", "slow"]
+    assert seen.seconds == 4.6
+
+
+TESTS = """
+import pytest
+from watched import called
+
+@pytest.fixture(params=["one"])
+def target(request):
+    return request.param
+
+def test_calls():
+    assert called() == 1
+
+def test_does_not():
+    pass
+
+def test_opens_a_device(target):
+    pass
+
+@pytest.mark.parametrize(("target", "other"), [("a", 1)])
+def test_has_a_parameter_of_that_name(target, other):
+    pass
+"""
+
+
+def test_calls_are_noted_and_devices_left_out(pytester: pytest.Pytester, tmp_path: Path) -> None:
+    watched = pytester.makepyfile(watched="def called():\n    return 1\n")
+    pytester.makepyfile(test_it=TESTS)
+    notes = tmp_path / "seen.json"
+    pytester.makeconftest(
+        "from pathlib import Path\n"
+        "from conformance.mutation.seen import Selection, Watch\n"
+        f"WATCH = Watch(Path({str(watched.parent)!r}), ['watched.py'])\n"
+        "def pytest_configure(config):\n"
+        "    config.pluginmanager.register(Selection())\n"
+        "    config.pluginmanager.register(WATCH)\n"
+        "def pytest_unconfigure(config):\n"
+        f"    WATCH.write(Path({str(notes)!r}))\n"
+    )
+    pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=3)
+    found = Seen.read(notes).tests
+    assert sorted(name.partition("::")[2] for name in found) == [
+        "test_calls",
+        "test_does_not",
+        "test_has_a_parameter_of_that_name[a-1]",
+    ]
+    assert [t["calls"] for name, t in found.items() if name.endswith("test_calls")] == [{"watched.py": [1]}]
+    assert [t["calls"] for name, t in found.items() if name.endswith("test_does_not")] == [{}]
+
+
+def test_watch_follows_no_other_file() -> None:
+    assert set(Watch(Path("/root"), ["a.py"]).paths) == {"/root/a.py"}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_mutants_of_a_table(name: str) -> None:
+    text = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+    table = read_table(name, name, text)
+    found = table_rules.mutants("a.toml", text)
+    assert {m.operator for m in found} >= {"kind", "halved", "doubled", "setting"}
+    for mutant in found:
+        changed = table_rules.mutated(text, mutant.index)
+        try:
+            other = read_table(name, name, changed)
+        except UserError:
+            continue
+        rows = [op for op in table.rows if table.rows[op] != other.rows[op]]
+        settings = [s for s in ("rounding", "flush", "fused") if getattr(table, s) != getattr(other, s)]
+        assert len(rows) + len(settings) == 1, mutant
+
+
+def test_a_draw_is_counted_and_shown() -> None:
+    def result(line: int, outcome: str) -> Result:
+        return Result(Mutant("codegen/a.py", "f", "number", "0", "1", line, line), outcome, 2.0)
+
+    draw = draw_of([result(1, "killed"), result(2, "survived"), result(3, "refused")], 7, 90)
+    assert (draw["killed"], draw["survived"], draw["refused"], draw["of"]) == (1, 1, 1, 90)
+    assert draw["files"] == {"codegen/a.py": [2, 1, 0, 1]}
+    assert len(FILE_COLUMNS) == 4
+    assert draw["survivors"] == ["codegen/a.py:2 f: number: 0 -> 1"]
+    lines = overview({"oracle": [{**draw, "seed": 6}, draw]})
+    assert [line.split(" | ")[2] for line in lines[2:]] == ["7", "6"]
+    assert lines[2].startswith("| oracle |")
