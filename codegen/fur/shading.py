@@ -6,7 +6,9 @@ the uniform block each.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 from codegen.emit import wrap
 from codegen.emit.dialect import Dialect
@@ -15,6 +17,7 @@ from codegen.errors import UserError
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32, VEC3, Scalar, Struct, Type, Vector
 from codegen.library import Library
+from codegen.passes.specialise import specialise
 
 FROM_STAGE = ("n", "t", "l", "v", "h", "light")
 SCALED = {"coat.density": "density_share", "coat.hair_length": "length_share"}
@@ -37,10 +40,14 @@ class Slot:
 
 @dataclass(frozen=True)
 class FurShading:
-    """A shading function ready to be called by a stage."""
+    """A shading function ready to be called by a stage.
+
+    paths  parameter -> what it is called in scenes, where that is not its own name
+    """
 
     function: ir.Function
     material: tuple[Slot, ...]
+    paths: Mapping[str, str] = field(default_factory=dict)
 
     def statements(self, dialect: Dialect, prefix: str) -> list[str]:
         """Statements that leave in `reflected` what the function sends to the eye of one light.
@@ -60,7 +67,7 @@ class FurShading:
             lines += let("h", vec3, f"{prefix}{HALF_VECTOR}(l, v)")
         args: list[ir.Expr] = []
         for p in self.function.parameters:
-            argument = self._argument(p.name, p.type, p.name, prefix)
+            argument = self._argument(p.name, p.type, self.paths.get(p.name, p.name), prefix)
             if isinstance(argument, ir.Construct):
                 lines += let(p.name, argument.type.name, printer.show(argument))
                 argument = ir.Var(argument.type, p.name)
@@ -92,11 +99,28 @@ def member_name(path: str) -> str:
     return f"shade_{path.replace('.', '_')}"
 
 
-def fur_shading(library: Library, name: str) -> FurShading:
+def fixed_shading(
+    library: Library, shading: FurShading, material: Mapping[str, Any], painted: bool
+) -> tuple[Library, FurShading]:
+    """The lighting of fur with a scene's parameters folded in, and the library that has it.
+
+    material  value by path, as the scene states it
+    painted   whether vertices scale length and density, which then stay members of the uniform block
+    """
+    constants = {path: value for path, value in material.items() if not (painted and path in SCALED)}
+    made = specialise(library, shading.function.name, constants, new_name=f"{shading.function.name}_fixed")
+    extended = library.with_functions([made.function])
+    paths = {name: path for path, name in made.parameters.items()}
+    return extended, fur_shading(extended, made.function.name, paths)
+
+
+def fur_shading(library: Library, name: str, paths: Mapping[str, str] | None = None) -> FurShading:
     """The lighting of fur by a function of the library.
 
+    paths   parameter -> what it is called in scenes, where that is not its own name
     errors  UserError for an unknown name, and for functions that need what a coat does not have
     """
+    paths = paths or {}
     function = library.function(name)
     if function.returns != VEC3:
         raise UserError(f"{name} cannot shade fur: it returns no colour")
@@ -106,13 +130,13 @@ def fur_shading(library: Library, name: str) -> FurShading:
         if path in FROM_STAGE:
             return
         if isinstance(type_, Struct):
-            for field in type_.fields:
-                visit(f"{path}.{field.name}", field.type)
+            for part in type_.fields:
+                visit(f"{path}.{part.name}", part.type)
         elif isinstance(type_, Scalar | Vector) and path != "map_tangent":
             slots.append(Slot(path, member_name(path), type_))
         else:
             raise UserError(f'{name} cannot shade fur: a coat has no "{path}"')
 
     for parameter in function.parameters:
-        visit(parameter.name, parameter.type)
-    return FurShading(function, tuple(slots))
+        visit(paths.get(parameter.name, parameter.name), parameter.type)
+    return FurShading(function, tuple(slots), paths)

@@ -15,7 +15,8 @@ from codegen.library import load_library
 @click.command("fur")
 @click.argument("scene", metavar="SCENE.toml", type=click.Path(path_type=Path))
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="The folder to write.")
-def command(scene: Path, output: Path) -> None:
+@click.option("--fixed", is_flag=True, help="Fold the scene's parameters into the stages as constants.")
+def command(scene: Path, output: Path, fixed: bool) -> None:
     """Stages, pass states and buffers for the fur of SCENE.toml, by shells and fins.
 
     Writes vertex and fragment stages in GLSL 3.30 and ES 3.00, a WGSL module, the mesh as fur.bin, and
@@ -28,7 +29,7 @@ def command(scene: Path, output: Path) -> None:
     console = Console(stderr=True)
     with console.status(f"growing the fur of {scene}"):
         studio = set_up_fur(load_library(), scene, pictured=False)
-        files = studio.kit()
+        files = (studio.fixed() if fixed else studio).kit()
     write_folder(output, files)
     if console.is_terminal:
         for name, count in studio.mesh.findings.items():

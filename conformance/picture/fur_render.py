@@ -15,7 +15,7 @@ from codegen.errors import UserError
 from codegen.fur.coat import FurMesh, grow
 from codegen.fur.kit import kit_files
 from codegen.fur.layout import Block, uniform_block
-from codegen.fur.shading import FurShading, fur_shading
+from codegen.fur.shading import FurShading, fixed_shading, fur_shading
 from codegen.fur.stages import DIALECTS, stage_texts
 from codegen.fur.states import pass_states
 from codegen.library import Library
@@ -64,8 +64,15 @@ class FurStudio:
         bounds = ball(self.mesh, self.fur.length)
         camera = self.picture.camera
         matrix = view_projection(camera, width / height, bounds, DEPTH_FROM[target])
-        frame = frame_values(self.fur, self.mesh, camera, self.picture.lights, self.material)
+        material = {slot.path: self.material[slot.path] for slot in self.shading.material}
+        frame = frame_values(self.fur, self.mesh, camera, self.picture.lights, material)
         return {"view_projection": matrix.T.reshape(-1), **frame}
+
+    def fixed(self) -> FurStudio:
+        """The same with the scene's parameters folded into the lighting: fewer uniforms, less to compute."""
+        material = {path: value if len(value) > 1 else value[0] for path, value in self.material.items()}
+        library, shading = fixed_shading(self.library, self.shading, material, any(self.fur.channels))
+        return replace(self, library=library, shading=shading)
 
     def kit(self) -> dict[str, bytes]:
         """The files that an engine needs, see codegen.fur.kit."""

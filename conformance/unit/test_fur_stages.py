@@ -25,7 +25,7 @@ from codegen.emit.module import emit_selection
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.fur.layout import FIN_VERTEX, FUR_VERTEX, uniform_block
-from codegen.fur.shading import fur_shading
+from codegen.fur.shading import fixed_shading, fur_shading
 from codegen.fur.stages import DIALECTS, stage_texts
 from codegen.fur.states import pass_states
 from codegen.library import load_library
@@ -233,6 +233,21 @@ def test_coverage_is_proportional_to_the_share() -> None:
 def test_models_that_no_coat_can_feed_are_refused(model: str, sentence: str) -> None:
     with pytest.raises(UserError, match=re.escape(sentence)):
         fur_shading(LIBRARY, model)
+
+
+def test_folded_parameters_leave_no_uniforms() -> None:
+    shading = fur_shading(LIBRARY, "shell_shade")
+    material = {
+        "k_diffuse": (0.3, 0.2, 0.1),
+        "p_diffuse": 1.0,
+        "k_specular": (0.1, 0.1, 0.1),
+        "p_specular": 8.0,
+    }
+    library, fixed = fixed_shading(LIBRARY, shading, material, painted=True)
+    assert fixed.material == () and [p.name for p in fixed.function.parameters] == ["n", "l", "h"]
+    for target, dialects in DIALECTS.items():
+        for text in stage_texts(library, fixed, target, dialects[0]).values():
+            assert re.search(r"\bshade_", text) is None  # how members of the material are called
 
 
 def test_a_target_that_draws_no_fur_says_so() -> None:

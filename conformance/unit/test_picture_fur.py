@@ -1,7 +1,8 @@
 """Fur is drawn alike by OpenGL and WebGPU, and each piece of it does what it is there for.
 
 Plan.
-  agreement  both example scenes, small, on both targets; GLSL 3.30 and ES 3.00 on one driver
+  agreement  both example scenes, small, on both targets; GLSL 3.30 and ES 3.00 on one driver; with
+             parameters folded in
   pieces     on a ball: shells reach beyond the base, fins show at the silhouette only, the shadow darkens
              towards the skin, bald skin is the base, another seed is another coat
   camera     the target is in the middle, near and far end of the scene are the ends of the depth range
@@ -73,6 +74,19 @@ def test_the_dialects_of_glsl_draw_the_same_fur(ball: FurStudio) -> None:
         drawing.release()
     assert len(pictures) == 2 and pictures[0].max() > 0.1
     assert np.array_equal(pictures[0], pictures[1])
+
+
+def test_fixed_parameters_draw_the_same_fur(ball: FurStudio) -> None:
+    fixed = ball.fixed()
+    assert fixed.shading.function.name == "fakefur_shade_fixed" and fixed.shading.material == ()
+    assert fixed.block.size < ball.block.size
+    general, folded = (samples(studio, "glsl")[..., :3].astype(np.float64) for studio in (ball, fixed))
+    assert steps_apart(general, folded).max() < tolerance("backend_steps")
+    painted = replace(ball, fur=replace(ball.fur, channels=("red", "green")))
+    kept = [slot.path for slot in painted.fixed().shading.material]
+    assert kept == ["coat.density", "coat.hair_length"]
+    drawn = samples(painted.fixed(), "glsl")[..., :3].astype(np.float64)
+    assert steps_apart(general, drawn).max() < tolerance("backend_steps")
 
 
 @pytest.fixture(scope="module")
