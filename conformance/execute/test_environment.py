@@ -24,6 +24,7 @@ from conformance.reference.lobes import LOBES
 from conformance.textures.environments import (
     CLEAR,
     SIZES,
+    corners,
     looks,
     paraboloid,
     parameters,
@@ -35,6 +36,8 @@ from targets import TimedRuntime
 SEED = 20260807
 LOOKS = 600
 LANES = 40
+BRIGHTEST = 1e30
+"""Radiance far beyond any map's: a sum of weights must not overflow."""
 LIBRARY = load_library()
 ESTIMATORS = [n for n, f in LIBRARY.documented.items() if n.startswith("env_") and "shift" in f.doc.entries]
 USUAL = ("env_filtered_phong", "env_guarded_ggx", "env_monte_carlo_strand", "env_grid_poulin_fournier")
@@ -68,11 +71,15 @@ def within(name: str, inputs: dict[str, Any], got: Any) -> bool:
     return bool(np.isfinite(got).all() and (np.abs(got - exact) <= bound.bound * largest * size).all())
 
 
+def own(name: str) -> tuple[str, ...]:
+    """The parameters of an estimator's lobe."""
+    return next(LOBES[lobe] for lobe in sorted(LOBES, key=len, reverse=True) if name.endswith(f"_{lobe}"))
+
+
 def drawn(name: str, kind: str, size: int = 32) -> dict[str, Any]:
     """A map and views for an estimator."""
-    lobe = next(lobe for lobe in sorted(LOBES, key=len, reverse=True) if name.endswith(f"_{lobe}"))
     shaded: dict[str, Any] = views(LANES, SEED)
-    return {"env": paraboloid(size, kind, SEED), **shaded, **parameters(LOBES[lobe], LANES, SEED)}
+    return {"env": paraboloid(size, kind, SEED), **shaded, **parameters(own(name), LANES, SEED)}
 
 
 @pytest.mark.parametrize("kind", ["random", "hot"])
@@ -141,6 +148,13 @@ def test_estimators(name: str, runtime: TimedRuntime) -> None:
         assert not got[inputs["samples"] == 0].any()
         unlit = (inputs["v"] * inputs["frame"]["normal"]).sum(axis=1) < 0.0
         assert name not in SURFACES or not got[unlit].any()
+
+
+@pytest.mark.parametrize("name", [usual(n, n in USUAL) for n in ESTIMATORS])
+def test_corners_of_the_domain_stay_finite(name: str, runtime: TimedRuntime) -> None:
+    brightest = [level * np.float32(BRIGHTEST) for level in paraboloid(8, "random", SEED)]
+    inputs = {"env": brightest, **corners(own(name), 10 * LANES, SEED)}
+    assert np.isfinite(np.asarray(execute(LIBRARY, name, inputs, runtime))).all()
 
 
 def test_maps_of_one_texel(runtime: TimedRuntime) -> None:

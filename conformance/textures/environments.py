@@ -83,3 +83,27 @@ def parameters(names: tuple[str, ...], count: int, seed: int) -> dict[str, npt.N
         else:
             drawn[name] = rng.choice(SHARES, count)
     return {name: values.astype(np.float32) for name, values in drawn.items()}
+
+
+CORNERS = {
+    "exponent": (0.0, 0.5, 1.0, 1e5),
+    "alpha": (1e-4, 1e-3, 1.0),
+    "spread": (1e-3, 0.5, np.pi / 2.0),
+    "specular": (0.0, 1e-7, 1.0 - 2.0**-24, 1.0),
+}
+"""Values at the ends of the parameters' domains and beside them."""
+
+
+def corners(names: tuple[str, ...], count: int, seed: int) -> dict[str, Any]:
+    """Views along and across the axes of their frames, shifts at the ends, and such values of parameters."""
+    rng = np.random.Generator(np.random.PCG64(seed))
+    found = views(count, seed)
+    axes = found["frame"]
+    near = unit(axes["tangent"] + 1e-4 * axes["normal"]).astype(np.float32)
+    viewers = np.stack([axes["normal"], -axes["normal"], axes["tangent"], axes["bitangent"], near])
+    found["v"] = viewers[np.arange(count) % len(viewers), np.arange(count)]
+    found["shift"] = rng.choice([0.0, 0.5, 1.0 - 2.0**-24], (count, 2)).astype(np.float32)
+    for name in names:
+        ends = next(values for key, values in CORNERS.items() if name.startswith(key))
+        found[name] = rng.choice(ends, count).astype(np.float32)
+    return found
