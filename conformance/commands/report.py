@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -90,11 +91,15 @@ def command(
     else:
         if not (quick or wanted):
             emission = [f.as_data() for f in emission_figures(library, EMISSION_RUNS)]
-        results, skipped = measured(library, where, quick, wanted, record, named=bool(targets or drivers))
-        if not wanted and plan.maps_are_here():
+        with_light = not wanted and plan.maps_are_here()
+        options = Options.quick(wanted) if quick else Options(wanted, at_once=1 if record else 2)
+        if quick and with_light:
+            options = replace(options, seconds=options.seconds - plan.QUICK_SECONDS)
+        results, skipped = measured(where, options, named=bool(targets or drivers))
+        if with_light:
             chosen = plan.Plan.quick() if quick else plan.Plan()
             with Watcher() as watcher:
-                light, _ = measure_light(where, chosen, watcher, at_once=1 if record else 2, quick=quick)
+                light, _ = measure_light(where, chosen, watcher, at_once=options.at_once, quick=quick)
     report = build(
         library,
         results,
@@ -118,16 +123,9 @@ def command(
 
 
 def measured(
-    library: Library,
-    where: list[Any],
-    quick: bool,
-    wanted: tuple[str, ...],
-    record: bool,
-    *,
-    named: bool,
+    where: list[Any], options: Options, *, named: bool
 ) -> tuple[list[dict[str, Any]], dict[str, str]]:
     """The results of the drivers, and why others are missing; raises UserError where none is left."""
-    options = Options.quick(wanted) if quick else Options(wanted, at_once=1 if record else 2)
     with Watcher() as watcher:
         results, missing = measure(where, options, watcher)
     if not results:

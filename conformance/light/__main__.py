@@ -19,7 +19,7 @@ from conformance.report.page import light_page
 
 @click.command()
 @click.option("-o", "--output", "folder", type=click.Path(path_type=Path), required=True, help="The folder.")
-@click.option("--quick", is_flag=True, help="One map, five lobes, four numbers of samples.")
+@click.option("--quick", is_flag=True, help="One map, three lobes, three numbers of samples.")
 @click.option("--target", "targets", multiple=True, type=click.Choice(TARGETS), help="Repeatable.")
 @click.option("--driver", "drivers", multiple=True, help="A driver of vair doctor by name; repeatable.")
 @click.option("--from-recorded", is_flag=True, help="Measure nothing: show what was recorded.")
