@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import click
@@ -62,6 +63,8 @@ def command(
     chosen = with_half(chosen) if precision == "half" else chosen
     names = list(functions) or None
     if max_error is not None:
+        if not math.isfinite(max_error):  # NaN is in every click range
+            raise UserError(f"--max-error {max_error:g}: the largest error is a number from 0 on")
         if precision == "half":
             raise UserError("--max-error chooses by errors in single precision; leave out --precision half")
         names = choose_names(target, names, max_error, measure)

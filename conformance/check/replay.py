@@ -75,7 +75,10 @@ def records(path: Path) -> list[Mapping[str, Any]]:
     except (OSError, ValueError):
         raise UserError(f"{path} is not JSON") from None
     if isinstance(data, dict) and "results" in data:
-        data = [failure for result in data["results"] for failure in result["failures"]]
+        try:
+            data = [failure for result in data["results"] for failure in result["failures"]]
+        except (KeyError, TypeError):
+            raise UserError(f"{path} is no result of vair check --json") from None
     listed = data if isinstance(data, list) else [data]
     if not listed or not all(isinstance(record, dict) and "words" in record for record in listed):
         raise UserError(f"{path} holds no failure to replay")

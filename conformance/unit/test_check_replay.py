@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from codegen.cli import run
+from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.library import load_library
 from conformance.check.engine import Backend, check_function
+from conformance.check.replay import records
 from conformance.check.result import FunctionResult
 from conformance.check.shard import Shard
 
@@ -132,3 +134,11 @@ def test_merging_refuses_other_sources_and_other_files(tmp_path: Path) -> None:
     assert run(["check", "--merge", str(tmp_path / "none.json")]) == 2
     assert run(["check", "--merge"]) == 2
     assert run(["check", str(first)]) == 2
+
+
+@pytest.mark.parametrize("text", ['{"results": [{}]}', '{"results": 5}', '{"results": [7]}'])
+def test_what_only_looks_like_a_result_is_refused(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    path.write_text(text)
+    with pytest.raises(UserError, match=r"a\.json is no result of vair check --json"):
+        records(path)

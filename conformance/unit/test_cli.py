@@ -77,6 +77,14 @@ BAD_USAGE: dict[str, tuple[list[str], str]] = {
     ),
     "reserved prefix": (["emit", "--target", "glsl", "--prefix", "gl_"], 'prefix "gl_" starts like a name'),
     "empty prefix": (["emit", "--target", "glsl", "--prefix", ""], 'prefix "" must be'),
+    "error limit": (
+        ["emit", "--target", "glsl", "--function", "sin_angle", "--max-error", "nan"],
+        "--max-error nan: the largest error is a number from 0 on",
+    ),
+    "endless error limit": (
+        ["emit", "--target", "glsl", "--function", "sin_angle", "--max-error", "inf"],
+        "--max-error inf: the largest error is a number from 0 on",
+    ),
     "replay": (["check", "--replay", "nonsense"], "nonsense"),
     "replay of nothing": (["check", "--replay", ""], "replay"),
 }
