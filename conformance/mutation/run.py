@@ -99,20 +99,22 @@ def prepare(group: Group, subjects: Sequence[Subject]) -> dict[Subject, Prepared
 
     The subjects share their tests.
     """
-    tests, paths = subjects[0].tests, tuple(s.path for s in subjects)
+    tests = subjects[0].tests
+    # All files of these tests, so that what was seen serves every part of a sample.
+    paths = tuple(s.path for s in group.subjects if s.tests == tests)
     if warm_up(tests):
         raise BaselineError(f"{' '.join(tests)} cannot be collected")
-    stale = {s: frozenset(dependants(module_of(s.path))) for s in subjects}
     notes = NOTES / f"{_hash_of(tests, paths, group.without)}.json"
     if not notes.exists():
         NOTES.mkdir(parents=True, exist_ok=True)
-        union = frozenset[str]().union(*stale.values())
+        union = frozenset[str]().union(*(dependants(module_of(path)) for path in paths))
         watched = Session(tests, union, without=group.without, watched=paths, notes=notes)
         trial = Trial(watched, Change(paths[0]), 20 * group.limit)
         if trial.wait() != SURVIVED:
             notes.unlink(missing_ok=True)
             told = trial.output.decode(errors="replace")[-3000:]
             raise BaselineError(f"{' '.join(tests)} fail without a mutant:\n{told}")
+    stale = {s: frozenset(dependants(module_of(s.path))) for s in subjects}
     seen = Seen.read(notes)
     return {s: Prepared(Session(tests, stale[s], without=group.without), seen, s) for s in subjects}
 
