@@ -2,14 +2,18 @@
 
 Plan. The sources below shaderlib/environment are what the template gives; every lobe has every estimator,
 with the catalogue's parameters. The reference, which tests on drivers trust, agrees with the lookups of
-conformance/light away from the rim, is continuous across it, and finds a constant sky at every level.
+conformance/light away from the rim, is continuous across it, and finds a constant sky at every level. What
+`vair env` prepares, the functions read: directions keep their axes.
 """
 
 import numpy as np
 import pytest
 
 from codegen.estimators import estimator_sources
+from codegen.evaluate import evaluate
 from codegen.library import default_root, load_library
+from codegen.maps import latlong
+from codegen.maps.prepared import Settings, levels
 from conformance.light.environment import Environment
 from conformance.reference import reference_for
 from conformance.reference.environment import BLEND_HEIGHT, ESTIMATORS
@@ -20,6 +24,8 @@ SEED = 20260808
 LIBRARY = load_library()
 (RADIANCE,) = LIBRARY.bounds["env_radiance"]
 COUNT = 400
+CLEAR_OF_STEPS = 0.3
+"""Least component of a direction that a map of 32 texels looks up without a texel of the other octants."""
 
 
 @pytest.mark.parametrize(("path", "text"), list(estimator_sources()), ids=lambda x: x.split("\n")[0])
@@ -72,3 +78,14 @@ def test_reference_of_a_constant_sky_does_not_depend_on_levels(lobe: str) -> Non
     assert found[0].any()
     for other in found[1:]:
         assert np.abs(other - found[0]).max() <= RADIANCE.bound
+
+
+@pytest.mark.parametrize("name", ["env_radiance", "env_prefiltered"])
+def test_prepared_maps_keep_their_axes(name: str) -> None:
+    pixels = (latlong.directions(32, 64) > 0.0).astype(np.float32)
+    chain = [np.concatenate([x, x[..., :1]], axis=-1) for x in levels(pixels, Settings(size=32))]
+    w = looks(COUNT, SEED)["w"]
+    w = w[np.abs(w).min(axis=1) > CLEAR_OF_STEPS]
+    inputs = {"env": chain, "w": w} | ({"lod": np.zeros(len(w))} if name == "env_radiance" else {})
+    assert len(w) > 0
+    assert np.abs(evaluate(LIBRARY, name, inputs) - (w > 0.0)).max() <= RADIANCE.bound
