@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import importlib
-import importlib.resources
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from codegen.emit.dialect import Dialect
@@ -55,10 +55,13 @@ def texture_data(levels: tuple[Any, ...], repeat_u: bool, repeat_v: bool) -> Any
 
 def fur_stages(target: str) -> dict[str, str]:
     """The texts that stages of fur are made from, by file name; a target without any draws no fur."""
-    folder = importlib.resources.files(f"targets.{target}") / "fur"
+    package: Any = importlib.import_module(f"targets.{target}")
+    folder = Path(package.__file__).parent / "fur"
     if not folder.is_dir():
         raise UserError(f"target {target} draws no fur; glsl and wgsl do")
-    return {file.name: file.read_text(encoding="utf-8") for file in folder.iterdir() if file.is_file()}
+    return {
+        file.name: file.read_text(encoding="utf-8") for file in sorted(folder.iterdir()) if file.is_file()
+    }
 
 
 def open_runtime(target: str) -> Any:

@@ -9,6 +9,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -189,8 +190,9 @@ def _answer(
     )
     assert process.stdin is not None and process.stdout is not None
     with process:
-        process.stdin.write(job)
-        process.stdin.close()
+        with suppress(BrokenPipeError):  # it has ended already: its status says how
+            process.stdin.write(job)
+            process.stdin.close()
         answer: dict[str, Any] | str | None = None
         for line in process.stdout:
             event = _event(line)

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -105,8 +106,9 @@ def _process(chosen: Driver, job: Job, told: Report) -> tuple[list[FunctionResul
             stderr=noise,
         ) as process:
             assert process.stdin is not None and process.stdout is not None
-            process.stdin.write(pickle.dumps(job))
-            process.stdin.close()
+            with suppress(BrokenPipeError):  # it has ended already: its status says how
+                process.stdin.write(pickle.dumps(job))
+                process.stdin.close()
             for answer in _answers(process.stdout):
                 if isinstance(answer, str):
                     raise TargetUnavailable(answer)

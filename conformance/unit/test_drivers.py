@@ -189,6 +189,19 @@ def test_process_that_ends_costs_one_function(monkeypatch: pytest.MonkeyPatch) -
     assert "the driver's process ended with status 3 the driver gave up" in run.results[0].broken
 
 
+def test_process_that_ends_before_it_reads_its_job_costs_the_function(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A broken pipe would otherwise read as a reader of our own output that left: no failure."""
+    monkeypatch.setattr(runner, "MODULE", "conformance.drivers")  # a package, which cannot be run
+    more_than_a_pipe_holds = "0" * 2**20
+    run = run_driver(
+        driver("llvmpipe-compute"), LLVMPIPE, modes()["default"], ["sin_angle"], words=more_than_a_pipe_holds
+    )
+    (result,) = run.results
+    assert "the driver's process ended with status 1" in result.broken
+
+
 def test_process_that_someone_ends_is_no_failure_of_the_driver(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runner, "MODULE", "conformance.unit.support.dying_worker")
     monkeypatch.setenv("VAIR_TEST_SIGNAL", "yes")

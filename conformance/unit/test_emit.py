@@ -191,6 +191,20 @@ def test_domains_are_not_said_twice(text: str, domain: Domain | None, shown: str
     assert described(text, domain) == shown
 
 
+def test_a_bound_of_another_section_is_refused(tmp_path: Path) -> None:
+    """Of one function only the file of its section is read."""
+    for section, name in (("one", "f"), ("two", "g")):
+        (tmp_path / section).mkdir()
+        (tmp_path / section / f"{name}.py").write_text(f"def {name}(x: X) -> f32:\n    return x\n")
+    bound = '[[f]]\nmeasure = "exact"\ndomain = "all"\norigin = "here"\n'
+    (tmp_path / "one" / "bounds.toml").write_text(bound)
+    assert [b.measure for b in Library(tmp_path).bounds_of("f")] == ["exact"]
+    assert not Library(tmp_path).bounds_of("g")
+    (tmp_path / "two" / "bounds.toml").write_text(bound)
+    with pytest.raises(UserError, match=r'two/bounds\.toml: "f" is a function of another section'):
+        Library(tmp_path).bounds  # noqa: B018  what reads every file
+
+
 @one_per_target
 def test_declared_errors_stand_in_the_comment(dialect: Dialect) -> None:
     library = load_library()
