@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
@@ -125,10 +124,3 @@ def _grid(chosen: Plan, lobe: Lobe, here: Environment, truth: Array) -> Curve:
     rows = [2**k for k in range(1, 8) if min(chosen.counts) <= 2 * 4**k <= max(chosen.counts)]
     errors = [estimators.rms(estimators.grid(here, view, lobe, r), truth) for r in rows]
     return Curve(tuple(2 * r * r for r in rows), tuple(errors))
-
-
-def slope(curve: Curve) -> float:
-    """Power of the number of samples with which the error falls, by least squares; nan for one point."""
-    if len(curve.samples) < 2 or min(curve.rms) <= 0.0:
-        return math.nan
-    return float(np.polyfit(np.log(curve.samples), np.log(curve.rms), 1)[0])
