@@ -1,0 +1,55 @@
+"""What goes into the evaluator and between its kinds of numbers.
+
+Plan.
+  conversions  floats become whole numbers by cutting off, up to the ends of both types, in every arithmetic
+  shapes       a scalar of a wrong shape gets one sentence, as a vector does
+  multiprecision  inputs are exact there, and so is what follows
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from codegen.errors import UserError
+from codegen.evaluate import evaluate
+from codegen.evaluate.arrays import ARITHMETICS
+from conformance.unit.support.sources import library_of
+
+CUT_OFF = {
+    "u32": ([0.0, 0.75, 2.5, 3e9, 4294967040.0], [0, 0, 2, 3_000_000_000, 4_294_967_040]),
+    "i32": ([-2.75, -0.5, 0.5, 7.9, -2147483648.0, 2147483520.0], [-2, 0, 0, 7, -(2**31), 2_147_483_520]),
+}
+
+
+@pytest.mark.parametrize("arithmetic", ARITHMETICS)
+@pytest.mark.parametrize("type_", CUT_OFF)
+def test_floats_are_cut_off(type_: str, arithmetic: str, tmp_path: Path) -> None:
+    library = library_of(tmp_path, f"def probe(x: X) -> {type_}:\n    return {type_}(x)\n")
+    given, expected = CUT_OFF[type_]
+    found: Any = evaluate(library, "probe", {"x": np.array(given, np.float32)}, arithmetic)
+    assert [int(k) for k in found] == expected
+    assert np.asarray(found).dtype == {"u32": np.uint32, "i32": np.int32}[type_]
+
+
+def test_scalar_of_a_wrong_shape(tmp_path: Path) -> None:
+    library = library_of(tmp_path, "def probe(x: X, v: V) -> f32:\n    return x * v.x\n")
+    one, pairs = np.ones(3, np.float32), np.ones((3, 2), np.float32)
+    with pytest.raises(UserError, match=r"x has shape \(3, 2\), but f32 needs \(N,\)$"):
+        evaluate(library, "probe", {"x": pairs, "v": np.ones((3, 3), np.float32)})
+    with pytest.raises(UserError, match=r"v has shape \(3, 2\), but vec3 needs \(N, 3\)$"):
+        evaluate(library, "probe", {"x": one, "v": pairs})
+
+
+def test_multiprecision_takes_inputs_as_they_are(tmp_path: Path) -> None:
+    library = library_of(tmp_path, "def probe(x: X) -> f32:\n    return x / 3.0\n")
+    x = np.array([0.1, 1.0], np.float32)
+    with mpmath.workdps(40):
+        found: Any = evaluate(library, "probe", {"x": x}, "mpmath")
+        assert all(isinstance(value, mpmath.mpf) for value in found)
+        assert [value * 3 - mpmath.mpf(float(given)) for value, given in zip(found, x, strict=True)] == [0, 0]
+        assert found[1] != mpmath.mpf(1.0 / 3.0)
