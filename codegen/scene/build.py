@@ -32,7 +32,7 @@ from codegen.scene.proof import Proof, Results, prove
 from codegen.scene.reduce import Reduced, Reducer
 from codegen.scene.stopwatch import Speed
 
-SEARCH_POINTS = 20_000
+SEARCH_POINTS = 12_000
 PROOF_POINTS = 100_000
 UNEXECUTED_POINTS = 20_000
 """Points of a proof by float32 evaluation alone, where no driver is there to execute it."""

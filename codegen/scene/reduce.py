@@ -19,7 +19,7 @@ from codegen.passes.powers import LARGEST, ROWS
 from codegen.passes.specialise import Specialised, specialise
 from codegen.passes.text import show
 from codegen.scene.document import Scene
-from codegen.scene.drops import terms, without
+from codegen.scene.drops import Term, terms, without
 from codegen.scene.errors import Measured, Reference
 from codegen.scene.general import General
 from codegen.scene.knowledge import Knowledge, knowledge, model_ranges
@@ -89,6 +89,8 @@ class Reducer:
     _cleaned: dict[tuple[ir.Stmt, ...], Specialised] = field(default_factory=dict)
     _errors: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
     _screened: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
+    _without: dict[tuple[ir.Stmt, ...], list[tuple[Term, ir.Function]]] = field(default_factory=dict)
+    _gathered: dict[tuple[ir.Stmt, ...], ir.Function | None] = field(default_factory=dict)
 
     @staticmethod
     def of(library: Library, scene: Scene, general: General, points: Points) -> Reducer:
@@ -234,7 +236,10 @@ class Reducer:
     ) -> Specialised:
         """Fewer multiplications by constants; twice, since what is cleaned may show more."""
         for _ in range(2):
-            function = gathered(made.function)
+            body = made.function.body
+            if body not in self._gathered:
+                self._gathered[body] = gathered(made.function)
+            function = self._gathered[body]
             if function is not None:
                 made = self.taken(made, function, "constant factors gathered", prices, budget, changes)
         return made
@@ -250,12 +255,9 @@ class Reducer:
         return made
 
     def drop(self, made: Specialised, prices: Prices, budget: float) -> tuple[Specialised, Change] | None:
-        few = self.search.screen.points.inputs
-        given = {p.name: few[p.name] for p in made.function.parameters}
         price = prices.body(made.function)
         best: tuple[float, Specialised, Change] | None = None
-        for term in terms(self.library, made.function, given):
-            replaced = without(made.function, term)
+        for term, replaced in self.without_terms(made.function):
             if not self.passes(replaced, budget):
                 continue
             candidate = self.cleaned(replaced)
@@ -269,6 +271,15 @@ class Reducer:
             why = f"it stays within [{term.low:.3g}, {term.high:.3g}]; {_fewer(made, candidate)}"
             best = gain, candidate, Change("term", what, why, error.largest)
         return None if best is None else (best[1], best[2])
+
+    def without_terms(self, function: ir.Function) -> list[tuple[Term, ir.Function]]:
+        """The terms of a function that a number may stand for, each with the function that has the number."""
+        if function.body not in self._without:
+            few = self.search.screen.points.inputs
+            given = {p.name: few[p.name] for p in function.parameters}
+            found = terms(self.library, function, given)
+            self._without[function.body] = [(term, without(function, term)) for term in found]
+        return self._without[function.body]
 
     def witnesses(self, one: Specialised, other: Specialised) -> int:
         """How many points tell two functions apart."""

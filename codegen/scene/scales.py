@@ -20,7 +20,7 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import F32, Vector
 from codegen.passes.operations import operations
 
-MOST_SUMS = 8
+MOST_SUMS = 6
 """Sums of vectors up to which each number of them is tried to hand a constant on."""
 SMALLEST, LARGEST = 2.0**-16, 2.0**16
 """Constants that are carried: what powers make of others may leave the numbers."""
@@ -38,8 +38,11 @@ def gathered(function: ir.Function) -> ir.Function | None:
     """The function with its constant factors gathered; None where it has branches or loops, or none move."""
     if not all(isinstance(s, ir.Let | ir.Return) and not _mutable(s) for s in function.body):
         return None
-    sums = sum(isinstance(e, ir.Binary) and e.op in "+-" for e in ir.expressions(function.body))
-    tried = [_Gathering(kept).function(function) for kept in {*range(min(sums, MOST_SUMS) + 1), sums}]
+    sums = sum(
+        isinstance(e, ir.Binary) and e.op in "+-" and isinstance(e.type, Vector)
+        for e in ir.expressions(function.body)
+    )
+    tried = [_Gathering(kept).function(function) for kept in sorted({*range(min(sums, MOST_SUMS) + 1), sums})]
     found = min(tried, key=lambda f: sum(operations(f).values()))
     return None if found.body == function.body else found
 
