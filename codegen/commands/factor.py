@@ -69,8 +69,8 @@ def command(
     write_folder(output, files(factors, measured, name, kind))
     if console.is_terminal and measured is not None:
         console.print(
-            f"{name}: rms {100 * measured.rms:.2g} % of the mean, {100 * measured.seen:.2g} % with the cosine, "
-            f"median {100 * measured.median:.2g} %",
+            f"{name}: rms {100 * measured.rms:.2g} % of the mean, "
+            f"{100 * measured.seen:.2g} % with the cosine, median {100 * measured.median:.2g} %",
             highlight=False,
         )
 

@@ -29,8 +29,8 @@ class Op:
     names     parameter names for editors (built-ins)
     spell     spelling per target where it differs from `name`
     trailing  numbers that the text adds to the arguments
-    text      per target, the whole expression of a built-in that is no call there; {0} is the first argument's
-              name
+    text      per target, the whole expression of a built-in that is no call there; {0} is the name of the
+              first argument
     half      whether the overloads of f32 hold for f16 as well
     work      scalar operations by cost class for vectors of n components, where that is not n times `cost`
     """

@@ -111,7 +111,7 @@ def test_calls_are_noted_and_devices_left_out(pytester: pytest.Pytester, tmp_pat
 
 
 def test_watch_follows_no_other_file() -> None:
-    assert set(Watch(Path("/root"), ["a.py"]).paths) == {"/root/a.py"}
+    assert set(Watch(Path("/place"), ["a.py"]).paths) == {"/place/a.py"}
 
 
 @pytest.mark.parametrize("name", ["wgsl", "opencl_relaxed"])

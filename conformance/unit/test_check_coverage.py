@@ -24,6 +24,8 @@ DRAWN = 0.02
 LOBES_WITH_GAPS = {"strand_pdf", "poulin_fournier_value", "poulin_fournier_value_eight"}
 """Towards the axis, for exponents below 2, the density of the strand lobe has a pole that float32 does not
 tell; Poulin and Fournier's highlights are not measured at heights between 0 and 1e-12."""
+RARE = 1e-3
+"""Share of the random points of a lobe that its bounds may leave out: gaps are at the rim of its domain."""
 PARTS = [list(LIBRARY.public)[k::6] for k in range(6)]
 
 
@@ -33,8 +35,11 @@ def test_nothing_is_left_out_beyond_the_record(names: list[str]) -> None:
         recorded = RECORD.get(name, {"random": 0.0, "all": 0.0})
         at_random, everywhere = uncovered(LIBRARY, name)
         slack = DRAWN if name in RECORD else 0.0
-        assert at_random <= recorded["random"] + slack, name
-        assert everywhere <= recorded["all"] + slack, name
+        told = (
+            f"{name}: {everywhere:.1%} outside every bound; python -m conformance.check.coverage records it"
+        )
+        assert at_random <= recorded["random"] + slack, told
+        assert everywhere <= recorded["all"] + slack, told
 
 
 def test_lobes_are_bounded_everywhere() -> None:
@@ -42,11 +47,11 @@ def test_lobes_are_bounded_everywhere() -> None:
         name for name in RECORD if name in LIBRARY.public and LIBRARY.function(name).module == "lobes"
     }
     assert left_out <= LOBES_WITH_GAPS
-    assert all(RECORD[name]["random"] < 0.001 for name in left_out)
+    assert all(RECORD[name]["random"] < RARE for name in left_out)
 
 
 def test_page_shows_the_record() -> None:
-    assert PAGE.read_text(encoding="utf-8") == page(LIBRARY, RECORD)
+    assert PAGE.read_text(encoding="utf-8") == page(RECORD)
     assert set(RECORD) <= set(LIBRARY.public)
 
 
