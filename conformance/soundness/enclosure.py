@@ -95,8 +95,13 @@ def multiply(a: Enclosure, b: Enclosure) -> Enclosure:
         high = np.maximum(np.maximum(corners[0], corners[1]), np.maximum(corners[2], corners[3]))
     if a.short and b.short:
         return Enclosure(low, high) if low is high else _checked(low, high)
-    exact = _is_zero(a) | _is_zero(b)
+    exact = _is_zero(a) | _is_zero(b) | (_is_short(a) & _is_short(b))
     return _checked(np.where(exact, low, _below(low)), np.where(exact, high, _above(high)))
+
+
+def _is_short(a: Enclosure) -> Array:
+    """Lanes that hold one number of 24 bits, such as the 0 and 1 of clamped values."""
+    return np.asarray((a.low == a.high) & (a.low.astype(np.float32) == a.low))
 
 
 def _is_zero(a: Enclosure) -> Array:
