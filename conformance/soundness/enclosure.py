@@ -88,7 +88,11 @@ def multiply(a: Enclosure, b: Enclosure) -> Enclosure:
     elif a is b:
         near = np.maximum(np.maximum(a.low, -a.high), 0.0)
         far = np.maximum(np.abs(a.low), np.abs(a.high))
-        return Enclosure(np.maximum(_below(near * near), 0.0), np.where(far == 0.0, 0.0, _above(far * far)))
+        low, high, exact = near * near, far * far, _is_short(a)
+        return _checked(
+            np.where(exact, low, np.maximum(_below(low), 0.0)),
+            np.where(exact | (far == 0.0), high, _above(high)),
+        )
     else:
         corners = (a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high)
         low = np.minimum(np.minimum(corners[0], corners[1]), np.minimum(corners[2], corners[3]))
