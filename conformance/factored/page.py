@@ -76,10 +76,12 @@ def _channels(values: Sequence[float]) -> str:
 
 def _driver(data: Mapping[str, Any]) -> str:
     device, method = data["device"], data["method"]
+    rounds, load = method["rounds"][0], data["load_average"]["before"][0]
     lines = [
         "",
         f"**{device['short']}**: {device['api']}; {device['driver']}; {device['device']}; {data['date']}; "
-        f"{method['clock']}; load {data['load_average']['before'][0]:.1f}.",
+        f"{method['clock']}; {rounds} rounds or more; load {load:.1f}; "
+        f"factors fitted to {data['samples']} samples.",
         "",
         "| group | function | maps | throughput, ns | relative | latency, ns | relative | error | largest |",
         "|---|---|---|---:|---:|---:|---:|---:|---:|",

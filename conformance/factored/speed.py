@@ -117,6 +117,7 @@ def measure(
     return {
         "device": described_device(runtime.device),
         "method": {**method_data(bench), "net": "above a kernel that adds up the function's inputs instead"},
+        "samples": plan.samples,
         "judged": f"{JUDGED} pairs of directions uniform over the hemisphere, for the table of angles",
         "rivals": found,
     }

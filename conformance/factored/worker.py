@@ -11,8 +11,8 @@ from conformance.bench.worker import Say, opened_driver, serve
 from conformance.factored.plan import library, read_plan
 from conformance.factored.speed import measure
 
-QUICK_SAMPLES = 5000
-"""Samples of a fit whose error nobody reads."""
+QUICK_SAMPLES = 20_000
+"""Samples of the fits of a quick measurement."""
 
 
 def job(target: str, driver: str, *, quick: bool) -> str:
