@@ -58,7 +58,8 @@ def test_counts_start_at_zero() -> None:
     assert result().passed
     assert result().accepted
     fresh = result()
-    assert (fresh.lanes, fresh.non_finite, fresh.ambiguous, fresh.uncovered, fresh.seconds) == (0, 0, 0, 0, 0.0)
+    counts = fresh.lanes, fresh.non_finite, fresh.ambiguous, fresh.uncovered, fresh.seconds
+    assert counts == (0, 0, 0, 0, 0.0)
 
 
 @pytest.mark.parametrize("error", [0.0, 4.0])
