@@ -110,8 +110,9 @@ def test_without_constants_nothing_is_gathered() -> None:
 
 @pytest.mark.parametrize("target", ["glsl", "wgsl", "opencl"])
 def test_the_dense_coat_takes_half_the_operations(target: str) -> None:
+    """With operations as prices: by recorded times, PoCL prefers a form with more of them."""
     made, _ = ordinary()
-    found = made.reduced(Prices.of(made.library, target), HALF_STEP)
+    found = made.reduced(Prices(made.library, target), HALF_STEP)
     general = sum(operations(made.general.function, made.library).values())
     assert 2 * count(found.final.function) <= general
     assert found.error.largest <= 0.26 * HALF_STEP
