@@ -40,9 +40,7 @@ def shade_factored(backend: Backend, body: Body, maps: FactorMaps) -> Doubles:
     view, total = body.view, np.zeros((len(body), 3))
     constants = {**maps.inputs(), "scale": np.broadcast_to(maps.scale, (len(body), 3)).copy()}
     for light in LIGHTS:
-        towards = np.broadcast_to(unit(np.array(light.direction)), (len(body), 3))
-        axes = (view.tangent, view.bitangent, view.normal)
-        l = np.stack([np.sum(towards * axis, axis=1) for axis in axes], axis=1)
+        l = body.to_local(unit(np.array(light.direction)))
         given = {**constants, "l": l.astype(np.float32), "v": view.v.astype(np.float32)}
         total += np.array(light.colour) * backend.evaluate(maps.function, given)
     return total

@@ -19,6 +19,8 @@ from conformance.picture.vectors import dot, unit
 from conformance.picture.visibility import Camera, see
 from conformance.reference.sampling import r2_sequence
 
+Doubles = npt.NDArray[np.float64]
+
 BUNNY = default_root().parent / "examples" / "data" / "bunny.obj"
 BODIES = ("bunny", "sphere")
 SPHERE_SUBDIVISIONS = 5
@@ -47,24 +49,22 @@ class Body:
     @cached_property
     def view(self) -> View:
         """The frames in float64, viewers in the local frame: what the estimators of the reference take."""
-        tangent, bitangent, normal = (
-            np.asarray(axis, np.float64) for axis in (self.tangent, self.bitangent, self.normal)
-        )
-        v = np.asarray(self.v, np.float64)
-        local = np.stack([dot(v, axis) for axis in (tangent, bitangent, normal)], axis=-1)
-        return View(tangent, bitangent, normal, local)
+        tangent, bitangent, normal = self._axes
+        return View(tangent, bitangent, normal, self.to_local(self.v))
+
+    @property
+    def _axes(self) -> tuple[Doubles, ...]:
+        return tuple(np.asarray(axis, np.float64) for axis in (self.tangent, self.bitangent, self.normal))
+
+    def to_local(self, w: npt.ArrayLike) -> Doubles:
+        """A direction (3,) or one for each sample (N, 3), in the samples' frames: (N, 3)."""
+        world = np.asarray(w, np.float64)
+        return np.stack([np.sum(world * axis, axis=1) for axis in self._axes], axis=-1)
 
     @cached_property
     def frame(self) -> dict[str, npt.NDArray[np.float32]]:
         """The struct Frame of every covered sample."""
         return {"tangent": self.tangent, "bitangent": self.bitangent, "normal": self.normal}
-
-    @cached_property
-    def mirrored(self) -> npt.NDArray[np.float32]:
-        """The mirror directions of the viewers, (N, 3)."""
-        n = self.view.normal
-        v = np.asarray(self.v, np.float64)
-        return np.asarray(unit(2.0 * dot(n, v)[:, None] * n - v), np.float32)
 
     @cached_property
     def shifts(self) -> npt.NDArray[np.float32]:

@@ -87,10 +87,7 @@ def direct(backend: Backend, body: Body, env: Map, look: Look, names: list[str])
     """Radiance (N, 3): the sum over the map's lights."""
     view, total = body.view, np.zeros((len(body), 3))
     for light in env.lights:
-        towards = np.broadcast_to(np.array(light.direction), (len(body), 3))
-        local = np.stack(
-            [np.sum(towards * a, axis=1) for a in (view.tangent, view.bitangent, view.normal)], 1
-        )
+        local = body.to_local(light.direction)
         given = {"l": local.astype(np.float32), "v": view.v.astype(np.float32)}
         value = backend.evaluate(f"{look.lobe.name}_value", given | look.parameters(names, len(body)))
         radiance = {
@@ -104,8 +101,9 @@ def direct(backend: Backend, body: Body, env: Map, look: Look, names: list[str])
 
 def one_lookup(backend: Backend, body: Body, env: Map, look: Look, names: list[str]) -> Doubles:
     """Radiance (N, 3): one lookup at the mirror direction, scaled as a Phong lobe is at its peak."""
-    found = backend.evaluate("env_prefiltered", {"env": env.convolved(look.exponent), "w": body.mirrored})
     held = Lobe("phong", (look.exponent,))
+    w = prefiltered.directions(body.view, held).astype(np.float32)
+    found = backend.evaluate(emitted.PREFILTERED, {"env": env.convolved(look.exponent), "w": w})
     return np.asarray(found * prefiltered.scale(body.view, held), np.float64)
 
 
