@@ -110,7 +110,6 @@ class Builder:
         begin = time.perf_counter()
         constant, pixels = self.constant_lights()
         general = general_function(self.scene, constant)
-        self.library.bounds  # noqa: B018  read once, for all libraries that extend this one
         library = self.library.with_functions([general.function])
         self.say("searching")
         reducer = Reducer.of(library, self.scene, general, draw(self.scene, general, SEARCH_POINTS))
