@@ -11,7 +11,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Iterable, Iterator
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 from typing import Any
 
 from distributed import Client, Worker, WorkerPlugin
@@ -27,6 +27,8 @@ QUEUED_PER_WORKER = 4
 CONNECT_SECONDS = 15
 ANNOUNCE_SECONDS = 60
 """How long to wait for the workers to say what they can do."""
+PATIENCE_SECONDS = 60.0
+"""How long work that was handed out waits for a worker that can do it, after the last one is gone."""
 
 
 def resource(target: str, source: str) -> str:
@@ -98,6 +100,7 @@ class Cluster:
         absent: dict[str, str] = {}
         done: SimpleQueue[Any] = SimpleQueue()
         under_way: dict[Any, Job] = {}
+        left_alone: set[str] = set()
         more = True
         while more or under_way:
             room = QUEUED_PER_WORKER * max(len(self.resources()), 1)
@@ -114,13 +117,38 @@ class Cluster:
                 future = self._submit(job)
                 under_way[future] = job
                 future.add_done_callback(done.put)
-            if under_way:
-                future = done.get()
-                job = under_way.pop(future)
-                if future.status == "finished":
-                    yield future.result()
-                else:
-                    yield Result(job, {}, f"the cluster gave it up: {future.exception()}")
+            if not under_way:
+                continue
+            try:
+                future = done.get(timeout=PATIENCE_SECONDS)
+            except Empty:
+                given_up = self._given_up(under_way, left_alone)
+                if given_up:
+                    absent.clear()  # what still waits is asked about anew
+                yield from given_up
+                continue
+            job = under_way.pop(future, None)
+            if job is None:
+                continue  # it was given up, and is told to be cancelled
+            if future.status == "finished":
+                yield future.result()
+            else:
+                yield Result(job, {}, f"the cluster gave it up: {future.exception()}")
+
+    def _given_up(self, under_way: dict[Any, Job], left_alone: set[str]) -> list[Result]:
+        """Jobs that no worker can do, nor could one PATIENCE_SECONDS ago, taken from those under way.
+
+        left_alone  targets that no worker could serve when this was asked last; renewed
+        """
+        absent = {job.target: self.missing(job.target) for job in under_way.values()}
+        absent = {target: reason for target, reason in absent.items() if reason}
+        lost = {f: job for f, job in under_way.items() if job.target in left_alone & absent.keys()}
+        for future in lost:
+            del under_way[future]
+            future.cancel()
+        left_alone.clear()
+        left_alone.update(absent)
+        return [Result(job, {}, absent[job.target]) for job in lost.values()]
 
     def _submit(self, job: Job) -> Any:
         # The key is the job: the same job asked for twice is done once.

@@ -148,3 +148,58 @@ def test_a_worker_killed_in_mid_run_loses_nothing(
     assert answers == {k: k * k for k in range(12)}
     assert len({r.data["pid"] for r in [first, *rest]}) >= 2
     assert all(r.done for r in rest)
+
+
+class Vanishing:
+    """A scheduler's client whose workers do two jobs and are gone."""
+
+    def __init__(self, *_: Any, **__: Any) -> None:
+        from conformance.executor.cluster import resource, source_hash
+
+        self.workers = [{"name": "0", "resources": {resource("numpy", source_hash()): 1.0}}]
+        self.cancelled = 0
+
+    def register_plugin(self, plugin: Any) -> None:
+        pass
+
+    def scheduler_info(self) -> dict[str, Any]:
+        return {"workers": dict(enumerate(self.workers))}
+
+    def submit(self, perform: Any, job: Job, **_: Any) -> Any:
+        client = self
+
+        class Future:
+            status = "pending"
+
+            def add_done_callback(self, done: Any) -> None:
+                if job.seed < 2:
+                    self.status = "finished"
+                    done(self)
+                else:
+                    client.workers.clear()
+
+            def result(self) -> Result:
+                found: Result = perform(job)
+                return found
+
+            def cancel(self) -> None:
+                client.cancelled += 1
+
+        return Future()
+
+
+@pytest.mark.timeout(60)
+def test_work_of_workers_that_are_all_gone_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed", reason="distributed is not installed: vair[cluster]")
+    from conformance.executor import cluster
+
+    monkeypatch.setattr(cluster, "_client", Vanishing)
+    monkeypatch.setattr(cluster, "PATIENCE_SECONDS", 0.05)
+    executor = cluster.Cluster("tcp://192.0.2.1:8786")
+    answers = told(executor.run(jobs(8)))
+    assert sorted(error for _, error in answers.values()) == [
+        "",
+        "",
+        *["none of 0 workers has the driver of numpy"] * 6,
+    ]
+    assert executor.client.cancelled == cluster.QUEUED_PER_WORKER, "the others were never handed out"
