@@ -12,7 +12,7 @@ from codegen.half import HalfForm, half_forms
 from codegen.ir.domains import Domain
 from codegen.ir.nodes import Function
 from codegen.library import Library
-from codegen.passes.operations import operations_by_cost
+from codegen.passes.analysis.operations import operations_by_cost
 
 
 def signature(f: Function) -> str:

@@ -20,7 +20,7 @@ from codegen.ir.types import BOOL, F16, F32, I32, TEXTURE, Array, Scalar, Struct
 from codegen.ir.unit import Unit
 from codegen.library import Library
 from codegen.passes.half import half_versions
-from codegen.passes.rename import add_prefix
+from codegen.passes.printing.rename import add_prefix
 
 LITERAL_CASES = 8
 """Calls with literal arguments in one program, at most."""

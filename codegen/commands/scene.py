@@ -13,9 +13,9 @@ from codegen.errors import UserError
 from codegen.files import write_folder
 from codegen.library import load_library
 from codegen.scene.build import Builder
-from codegen.scene.document import read_scene
-from codegen.scene.markdown import as_markdown, summary
-from codegen.scene.report import as_data, as_json
+from codegen.scene.description.document import read_scene
+from codegen.scene.report.markdown import as_markdown, summary
+from codegen.scene.report.report import as_data, as_json
 
 NO_DRIVERS = "left out by --no-drivers"
 

@@ -2,9 +2,9 @@
 
 from codegen.ir.unit import Unit
 from codegen.library import Selection
-from codegen.passes.decided import drop_decided
-from codegen.passes.precise import name_results
-from codegen.passes.rename import add_prefix
+from codegen.passes.printing.decided import drop_decided
+from codegen.passes.printing.precise import name_results
+from codegen.passes.printing.rename import add_prefix
 
 
 def run_passes(selection: Selection | Unit, prefix: str, *, named_results: bool = False) -> Unit:

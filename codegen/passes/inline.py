@@ -18,9 +18,9 @@ from codegen.errors import UserError
 from codegen.ir import nodes as ir
 from codegen.ir.types import Array, Struct, Type
 from codegen.library import Library
-from codegen.passes import branches
-from codegen.passes.flow import Branch, Carried, Flow, Item, Loop, Merge
-from codegen.passes.values import CALL, FIELD, LOCAL, PARAMETER, Value, Values, leaves
+from codegen.passes.placement import branches
+from codegen.passes.ssa.flow import Branch, Carried, Flow, Item, Loop, Merge
+from codegen.passes.ssa.values import CALL, FIELD, LOCAL, PARAMETER, Value, Values, leaves
 
 NAME = "inline"
 MOST_UNROLLED = 1024
@@ -36,7 +36,7 @@ class Inliner:
 
     keep     functions whose calls stay calls
     unroll   loops of at most so many iterations are unrolled
-    calls    rules that replace a whole call, see codegen.passes.powers
+    calls    rules that replace a whole call, see codegen.passes.rules.powers
     variants function -> the variant that is followed in its place
     """
 

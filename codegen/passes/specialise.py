@@ -2,7 +2,7 @@
 
     specialise(library, "fakefur_shade", constants={"optics.rho_surface": 0.0}, new_name="fur")
 
-The passes work together on values (codegen.passes.values): while calls are inlined, every new value is
+The passes work together on values (codegen.passes.ssa.values): while calls are inlined, every new value is
 simplified by all rules, and what that decides simplifies what follows, so one walk reaches the fixed point.
 The log says what was done, why it is sound, and where in the sources.
 """
@@ -19,23 +19,23 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import Struct, Type
 from codegen.library import Library
 from codegen.names import reserved
-from codegen.passes.axes import zero_components
-from codegen.passes.dead import pruned, used_parameters
-from codegen.passes.flow import roots
-from codegen.passes.fold import constants as fold_constants
-from codegen.passes.guards import guards
-from codegen.passes.identities import identities
+from codegen.passes.analysis.ranges import Ranges
 from codegen.passes.inline import Inliner
-from codegen.passes.powers import whole_exponents
-from codegen.passes.ranges import Ranges
-from codegen.passes.scalars import components
-from codegen.passes.schedule import statements
+from codegen.passes.placement.dead import pruned, used_parameters
+from codegen.passes.placement.schedule import statements
+from codegen.passes.rules.axes import zero_components
+from codegen.passes.rules.fold import constants as fold_constants
+from codegen.passes.rules.guards import guards
+from codegen.passes.rules.identities import identities
+from codegen.passes.rules.powers import whole_exponents
+from codegen.passes.rules.scalars import components
+from codegen.passes.rules.sums import cancellation
+from codegen.passes.ssa.flow import roots
+from codegen.passes.ssa.values import Rule, Step, Values, constant_components, leaves
 from codegen.passes.subject import Fact, Subject, is_taken_apart
-from codegen.passes.sums import cancellation
-from codegen.passes.values import Rule, Step, Values, constant_components, leaves
 
 EXACT_KINDS = ("exact", "finite", "real")
-"""Kinds of identities that are applied unless others are asked for; see codegen.passes.identities."""
+"""Kinds of identities that are applied unless others are asked for; see codegen.passes.rules.identities."""
 
 
 @dataclass(frozen=True)

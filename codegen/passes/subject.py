@@ -17,8 +17,8 @@ from codegen.errors import UserError, unknown
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Finite, Interval, Length, Unit, number
 from codegen.ir.types import BOOL, F32, Array, Scalar, Struct, Texture, Type, Vector
-from codegen.passes import patterns
-from codegen.passes.values import PARAMETER, Value, Values, any_element
+from codegen.passes.ssa import patterns
+from codegen.passes.ssa.values import PARAMETER, Value, Values, any_element
 
 TOLERANCE = 1e-6
 """How far a constant's length may be from what its domain says."""

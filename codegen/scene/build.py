@@ -17,20 +17,21 @@ from codegen.ir import nodes as ir
 from codegen.ir.domains import Interval, Unit
 from codegen.ir.types import F32, Array, Vector
 from codegen.library import Library
-from codegen.passes.operations import operations
+from codegen.passes.analysis.operations import operations
 from codegen.passes.specialise import Specialised, specialise
-from codegen.scene import environment, spirv, stopwatch, text
-from codegen.scene.document import Scene
+from codegen.scene import environment
+from codegen.scene.description.document import Scene
+from codegen.scene.description.lights import UNROLLED
 from codegen.scene.environment import ConstantLight, MapError
-from codegen.scene.errors import Floats, as_floats
 from codegen.scene.general import General, general_function
-from codegen.scene.knowledge import Given, Knowledge
-from codegen.scene.lights import UNROLLED
-from codegen.scene.points import SEED, Points, draw
-from codegen.scene.prices import Prices
-from codegen.scene.proof import Proof, Results, prove
-from codegen.scene.reduce import Reduced, Reducer
-from codegen.scene.stopwatch import Speed
+from codegen.scene.proof.errors import Floats, as_floats
+from codegen.scene.proof.points import SEED, Points, draw
+from codegen.scene.proof.proof import Proof, Results, prove
+from codegen.scene.reduction.knowledge import Given, Knowledge
+from codegen.scene.reduction.prices import Prices
+from codegen.scene.reduction.reduce import Reduced, Reducer
+from codegen.scene.report import spirv, stopwatch, text
+from codegen.scene.report.stopwatch import Speed
 
 SEARCH_POINTS = 12_000
 PROOF_POINTS = 100_000

@@ -16,11 +16,11 @@ from codegen.errors import Place
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Interval, Unit
 from codegen.ir.types import F32, I32, VEC3, Scalar, Struct, Type, Vector, array_of
-from codegen.scene.document import Scene
+from codegen.scene.description.document import Scene
+from codegen.scene.description.lights import UNROLLED, Lights
+from codegen.scene.description.model import COLOUR, HALF, LIGHT, VIEWER, Slot
+from codegen.scene.description.settings import Range
 from codegen.scene.environment import ConstantLight
-from codegen.scene.lights import UNROLLED, Lights
-from codegen.scene.model import COLOUR, HALF, LIGHT, VIEWER, Slot
-from codegen.scene.settings import Range
 
 CLOSEST_SQUARE = 1e-12
 """Squared distance to a point light below which its direction fades instead of being normalised."""

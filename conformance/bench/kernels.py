@@ -23,7 +23,7 @@ from codegen.ir.types import BOOL, F32, I32, TEXTURE, U32, Scalar, Struct, Type,
 from codegen.ir.unit import Unit
 from codegen.kernels import TEXTURE_STEM
 from codegen.library import Library
-from codegen.passes.rename import add_prefix
+from codegen.passes.printing.rename import add_prefix
 
 INDENT = "    "
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from codegen.ir.nodes import Function
 from codegen.library import Library
-from codegen.passes.operations import operations_by_cost
+from codegen.passes.analysis.operations import operations_by_cost
 from codegen.version import VERSION
 from conformance.bench.accuracy import Error
 from conformance.bench.kernels import THROUGHPUT

@@ -13,9 +13,10 @@ from pathlib import Path
 import pytest
 
 from codegen.library import load_library
-from codegen.scene import build, stopwatch
+from codegen.scene import build
 from codegen.scene.build import Builder, Outcome
-from codegen.scene.document import HALF_STEP, read_scene
+from codegen.scene.description.document import HALF_STEP, read_scene
+from codegen.scene.report import stopwatch
 from targets import TimedRuntime
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes" / "specialised"

@@ -17,7 +17,7 @@ from codegen.execute import execute
 from codegen.intervals import DEFAULT_TABLES, permitted
 from codegen.kernels import KernelOptions
 from codegen.library import load_library
-from codegen.passes.powers import error
+from codegen.passes.rules.powers import error
 from codegen.passes.specialise import specialise
 from conformance.cases.drawing import draw
 from conformance.unit.support import lights

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from codegen.errors import nearest
 from codegen.fur.coat import Combing
-from codegen.scene.tables import Table, show
+from codegen.scene.description.tables import Table, show
 
 Triple = tuple[float, float, float]
 

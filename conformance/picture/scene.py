@@ -13,8 +13,8 @@ from typing import Any
 
 from codegen.backends import TARGETS
 from codegen.errors import UserError
-from codegen.scene.document import BUDGETS
-from codegen.scene.tables import Table, is_number, read_tables, show
+from codegen.scene.description.document import BUDGETS
+from codegen.scene.description.tables import Table, is_number, read_tables, show
 from conformance.picture.brush import Brush
 from conformance.picture.fur_settings import Fur, read_fur
 from conformance.picture.visibility import Camera

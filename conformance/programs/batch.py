@@ -18,7 +18,7 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import I32, Scalar, Struct, Type, Vector, leaves
 from codegen.ir.unit import Unit
 from codegen.library import Library
-from codegen.passes.rename import add_prefix
+from codegen.passes.printing.rename import add_prefix
 
 
 @dataclass(frozen=True)

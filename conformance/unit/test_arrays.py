@@ -25,7 +25,7 @@ from codegen.ir.types import F32, I32, U32, VEC3, array_of, half_of, leaves
 from codegen.ir.verify import MalformedIRError, verify
 from codegen.kernels import kernel
 from codegen.library import load_library
-from codegen.passes.operations import operations
+from codegen.passes.analysis.operations import operations
 from codegen.passes.specialise import specialise
 from conformance.cases.domains import UNIT_TOLERANCE
 from conformance.cases.drawing import draw

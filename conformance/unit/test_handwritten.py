@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from codegen.library import load_library
-from codegen.scene.document import read_scene
-from codegen.scene.errors import Reference
+from codegen.scene.description.document import read_scene
 from codegen.scene.general import general_function
-from codegen.scene.points import draw
+from codegen.scene.proof.errors import Reference
+from codegen.scene.proof.points import draw
 from conformance.bench.handwritten import beside
 from targets import TARGETS, TargetUnavailable, open_runtime
 

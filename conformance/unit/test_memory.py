@@ -16,10 +16,10 @@ import pytest
 from codegen.evaluate import evaluate
 from codegen.evaluate.memory import Memory
 from codegen.library import Library, load_library
-from codegen.scene.document import read_scene
+from codegen.scene.description.document import read_scene
 from codegen.scene.general import general_function
-from codegen.scene.points import draw as scene_points
-from codegen.scene.sites import sites, substituted
+from codegen.scene.proof.points import draw as scene_points
+from codegen.scene.reduction.sites import sites, substituted
 from conformance.cases.drawing import draw, families_for
 
 LIBRARY = load_library()

@@ -15,7 +15,7 @@ from codegen.execute import execute
 from codegen.ir.unit import Unit
 from codegen.ir.verify import verify_selection
 from codegen.library import load_library
-from codegen.passes.decided import drop_decided
+from codegen.passes.printing.decided import drop_decided
 from conformance.unit.support.sources import library_of
 from targets import TimedRuntime
 

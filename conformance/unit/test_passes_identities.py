@@ -22,11 +22,11 @@ from codegen.ir.domains import Domain, Finite, Interval, Unit
 from codegen.ir.types import BOOL, F32, U32, VEC3, Type
 from codegen.ir.verify import verify
 from codegen.library import load_library
-from codegen.passes import patterns
-from codegen.passes.identities import ROWS, Row, identities
-from codegen.passes.norms import UNIT_SLACK
-from codegen.passes.ranges import Ranges
-from codegen.passes.values import Values
+from codegen.passes.analysis.norms import UNIT_SLACK
+from codegen.passes.analysis.ranges import Ranges
+from codegen.passes.rules.identities import ROWS, Row, identities
+from codegen.passes.ssa import patterns
+from codegen.passes.ssa.values import Values
 from conformance.unit.support.tolerances import tolerance
 from conformance.unit.support.trees import no_function
 

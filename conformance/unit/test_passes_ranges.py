@@ -21,13 +21,13 @@ from codegen.ir import nodes as ir
 from codegen.ir.domains import Interval, Unit
 from codegen.ir.types import BOOL, F32, I32, VEC3, Field, Struct, array_of
 from codegen.library import load_library
+from codegen.passes.analysis.norms import Lengths
+from codegen.passes.analysis.ranges import Ranges
 from codegen.passes.inline import Inliner, joined
-from codegen.passes.norms import Lengths
-from codegen.passes.ranges import Ranges
-from codegen.passes.regions import place
-from codegen.passes.scalars import components
+from codegen.passes.placement.regions import place
+from codegen.passes.rules.scalars import components
+from codegen.passes.ssa.values import Values
 from codegen.passes.subject import Fact, Subject
-from codegen.passes.values import Values
 from conformance.cases.drawing import draw, families_for
 from conformance.unit.support.tolerances import tolerance
 

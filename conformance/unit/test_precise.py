@@ -19,7 +19,7 @@ from codegen.errors import UserError
 from codegen.ir import nodes as ir
 from codegen.ir.unit import Unit
 from codegen.library import load_library
-from codegen.passes.precise import STEM, name_results
+from codegen.passes.printing.precise import STEM, name_results
 from targets.glsl import validate
 
 LOCAL = re.compile(r"^ +(precise )?(float|u?int|bool|[u]?vec\d|vair_\w+) \w+ =", re.MULTILINE)

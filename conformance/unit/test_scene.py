@@ -28,16 +28,16 @@ from codegen.intervals import DEFAULT_TABLES, permitted
 from codegen.ir.verify import verify
 from codegen.library import load_library
 from codegen.maps.image import exr
-from codegen.passes.operations import operations
+from codegen.passes.analysis.operations import operations
 from codegen.scene import build, environment
 from codegen.scene.build import Builder, Outcome
-from codegen.scene.document import Scene, read_scene
-from codegen.scene.errors import Measured
+from codegen.scene.description.document import Scene, read_scene
 from codegen.scene.general import general_function
-from codegen.scene.points import draw
-from codegen.scene.prices import Prices
-from codegen.scene.proof import Proof, prove
-from codegen.scene.reduce import Reduced, Reducer
+from codegen.scene.proof.errors import Measured
+from codegen.scene.proof.points import draw
+from codegen.scene.proof.proof import Proof, prove
+from codegen.scene.reduction.prices import Prices
+from codegen.scene.reduction.reduce import Reduced, Reducer
 from conformance.unit.support.tolerances import floor, tolerance
 
 NEUTRAL = {

@@ -11,8 +11,8 @@ import pytest
 
 from codegen.errors import UserError
 from codegen.library import load_library
-from codegen.scene.document import BUDGETS, HALF_STEP, Scene, read_scene
-from codegen.scene.settings import Alias, Constant, Range
+from codegen.scene.description.document import BUDGETS, HALF_STEP, Scene, read_scene
+from codegen.scene.description.settings import Alias, Constant, Range
 
 GOOD = """
 [scene]

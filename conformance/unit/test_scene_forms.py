@@ -1,9 +1,9 @@
 """Forms of a scene's function are equal as real numbers, cheaper, and taken only within a budget.
 
-Plan. Each form of codegen.scene.loosen is applied to the function of the dense coat that is timed beside
-hand-written ones, the gathering of constants to a function made for it; in float64 values agree before and
-after. Together they take the dense coat to half the general function's operations. Each term that a search
-may replace has two variants at least of fewer operations, with declared errors.
+Plan. Each form of codegen.scene.reduction.loosen is applied to the function of the dense coat that is timed
+beside hand-written ones, the gathering of constants to a function made for it; in float64 values agree before
+and after. Together they take the dense coat to half the general function's operations. Each term that a
+search may replace has two variants at least of fewer operations, with declared errors.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from codegen.evaluate import evaluate
 from codegen.ir import nodes as ir
 from codegen.ir.verify import verify
 from codegen.library import Library, load_library
-from codegen.passes.operations import operations
-from codegen.passes.powers import LARGEST
-from codegen.scene import loosen, scales
-from codegen.scene.document import HALF_STEP, read_scene
-from codegen.scene.errors import as_floats
+from codegen.passes.analysis.operations import operations
+from codegen.passes.rules.powers import LARGEST
+from codegen.scene.description.document import HALF_STEP, read_scene
 from codegen.scene.general import general_function
-from codegen.scene.points import draw
-from codegen.scene.prices import Prices
-from codegen.scene.reduce import Reducer
+from codegen.scene.proof.errors import as_floats
+from codegen.scene.proof.points import draw
+from codegen.scene.reduction import loosen, scales
+from codegen.scene.reduction.prices import Prices
+from codegen.scene.reduction.reduce import Reducer
 from conformance.bench.handwritten.beside import SCENE
 from conformance.unit.support.sources import library_of
 from conformance.unit.support.tolerances import tolerance

@@ -17,8 +17,8 @@ import pytest
 
 from codegen.cli import run
 from codegen.maps.image import exr
-from codegen.scene.markdown import as_markdown
-from codegen.scene.spirv import glslang
+from codegen.scene.report.markdown import as_markdown
+from codegen.scene.report.spirv import glslang
 
 SCENE = """
 [scene]

@@ -21,10 +21,10 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import F32
 from codegen.ir.verify import verify
 from codegen.library import Library, load_library
-from codegen.passes.operations import operations
+from codegen.passes.analysis.operations import operations
+from codegen.passes.rules.sums import cancellation
 from codegen.passes.specialise import Specialised, specialise
-from codegen.passes.sums import cancellation
-from codegen.passes.values import Values
+from codegen.passes.ssa.values import Values
 from conformance.unit.support.dialects import ONE_PER_TARGET, dialect_id, validate
 from conformance.unit.support.sources import library_of
 from conformance.unit.support.trees import no_function

@@ -19,8 +19,8 @@ from codegen.ir import nodes as ir
 from codegen.ir.domains import Interval
 from codegen.ir.verify import verify
 from codegen.library import load_library
-from codegen.passes.operations import operations
-from codegen.passes.powers import ROWS, error, multiplications
+from codegen.passes.analysis.operations import operations
+from codegen.passes.rules.powers import ROWS, error, multiplications
 from codegen.passes.specialise import Specialised, specialise
 from conformance.unit.support.sources import library_of
 from conformance.unit.support.trees import no_function

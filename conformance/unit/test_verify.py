@@ -13,7 +13,7 @@ from codegen.ir.unit import Unit
 from codegen.ir.verify import MalformedIRError, verify, verify_selection
 from codegen.library import load_library
 from codegen.passes import run_passes
-from codegen.passes.rename import add_prefix
+from codegen.passes.printing.rename import add_prefix
 from conformance.unit.support.trees import no_function
 
 NOWHERE = Place("test", 1)

@@ -17,13 +17,13 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import leaves
 from codegen.kernels import kernel
 from codegen.library import Library
-from codegen.scene import stopwatch
-from codegen.scene.document import read_scene
-from codegen.scene.errors import as_floats
+from codegen.scene.description.document import read_scene
 from codegen.scene.general import general_function
-from codegen.scene.points import draw
-from codegen.scene.prices import Prices
-from codegen.scene.reduce import Reducer
+from codegen.scene.proof.errors import as_floats
+from codegen.scene.proof.points import draw
+from codegen.scene.reduction.prices import Prices
+from codegen.scene.reduction.reduce import Reducer
+from codegen.scene.report import stopwatch
 
 FOLDER = Path(__file__).parent
 SCENE = FOLDER / "dense-fur.toml"

@@ -1,0 +1,1 @@
+"""Where values are computed: regions, names, order, and what is dead."""

@@ -1,0 +1,131 @@
+"""Statements of a flow: locals near their first use, in the regions that `regions` chose."""
+
+from __future__ import annotations
+
+from codegen.ir import nodes as ir
+from codegen.ir.types import BOOL, Type
+from codegen.passes.inline import joined
+from codegen.passes.placement.common import Names, named_values
+from codegen.passes.placement.regions import Placement, Region, place
+from codegen.passes.ssa.flow import Branch, Flow, Item, Loop, roots
+from codegen.passes.ssa.values import Values
+
+
+def statements(values: Values, flow: Flow, returns: Type, parameters: dict[str, str]) -> tuple[ir.Stmt, ...]:
+    """The body of a function; `parameters` gives the final name of each parameter by its path."""
+    assert flow.result is not None
+    result = joined(values, returns, flow.result)
+    placement = place(flow, result)
+    return _Writer(values, placement, parameters).body(flow.items, result)
+
+
+class _Writer:
+    def __init__(self, values: Values, placement: Placement, parameters: dict[str, str]) -> None:
+        self.values = values
+        self.placement = placement
+        self.names = Names(parameters.values())
+        self.variables = dict(parameters)
+        self.forced: set[int] = set()
+        self.force_swapped(placement.root)
+        self.named = named_values(values, placement, self.forced)
+        self.locals: dict[int, str] = {}
+        self.line = 0
+
+    def force_swapped(self, region: Region) -> None:
+        """What a loop hands on is computed before any of it is assigned: one may need another."""
+        for item in region.items:
+            if isinstance(item, Loop) and len(item.carried) > 1:
+                self.forced |= {
+                    id(c.following) for c in item.carried if not isinstance(c.following, ir.Const | ir.Var)
+                }
+            for inner in region.inner[id(item)]:
+                self.force_swapped(inner)
+
+    def body(self, items: list[Item], result: ir.Expr) -> tuple[ir.Stmt, ...]:
+        out: list[ir.Stmt] = []
+        self.region(self.placement.root, out)
+        self.demand(result, self.placement.root, out)
+        out.append(ir.Return(self.text(result), self.next_line()))
+        return tuple(out)
+
+    def next_line(self) -> int:
+        self.line += 1
+        return self.line
+
+    def region(self, region: Region, out: list[ir.Stmt]) -> None:
+        """The statements of the region's branches and loops, and what they need."""
+        for item in region.items:
+            for e in roots([item]):
+                self.demand(e, region, out)
+            if isinstance(item, Branch):
+                self.branch(item, region, out)
+            else:
+                self.loop(item, region, out)
+
+    def branch(self, item: Branch, region: Region, out: list[ir.Stmt]) -> None:
+        for m in item.merges:
+            self.variables[m.leaf.name] = self.names.give(m.name)
+            start = self.start(m.then.type)
+            out.append(ir.Let(self.variables[m.leaf.name], start, True, self.next_line()))
+        condition, line = self.text(item.condition), self.next_line()
+        sides: list[tuple[ir.Stmt, ...]] = []
+        for k, inner in enumerate(region.inner[id(item)]):
+            found: list[ir.Stmt] = []
+            self.region(inner, found)
+            for m in item.merges:
+                value = m.orelse if k else m.then
+                self.demand(value, inner, found)
+                found.append(ir.Assign(self.variables[m.leaf.name], self.text(value), self.next_line()))
+            sides.append(tuple(found))
+        out.append(ir.If(condition, sides[0], sides[1], line))
+
+    def start(self, type_: Type) -> ir.Expr:
+        """A value to declare a variable with, before either side gives it one."""
+        return self.values.number(False if type_ == BOOL else 0, type_)
+
+    def loop(self, item: Loop, region: Region, out: list[ir.Stmt]) -> None:
+        for c in item.carried:
+            name = self.names.give(c.name)
+            self.variables[c.inside.name] = self.variables[c.outside.name] = name
+            out.append(ir.Let(name, self.text(c.initial), True, self.next_line()))
+        self.variables[item.index.name] = self.names.give(item.name)
+        limit = None if item.limit is None else self.text(item.limit)
+        line = self.next_line()
+        (inner,) = region.inner[id(item)]
+        found: list[ir.Stmt] = []
+        self.region(inner, found)
+        for c in item.carried:
+            self.demand(c.following, inner, found)
+        copies: dict[int, str] = {}
+        for c in item.carried:
+            if isinstance(c.following, ir.Var) and len(item.carried) > 1:
+                copies[id(c)] = self.names.give(c.name)
+                found.append(ir.Let(copies[id(c)], self.text(c.following), False, self.next_line()))
+        for c in item.carried:
+            value = ir.Var(c.following.type, copies[id(c)]) if id(c) in copies else self.text(c.following)
+            found.append(ir.Assign(self.variables[c.inside.name], value, self.next_line()))
+        out.append(ir.For(self.variables[item.index.name], item.start, item.stop, tuple(found), line, limit))
+
+    def demand(self, e: ir.Expr, region: Region, out: list[ir.Stmt]) -> None:
+        """Define the locals of this region that a value needs and that are not there yet."""
+        waiting = [(e, False)]
+        seen: set[int] = set()
+        while waiting:
+            x, ready = waiting.pop()
+            if ready:
+                if id(x) in self.named and self.placement.homes[id(x)] is region and id(x) not in self.locals:
+                    value = self.text(x)
+                    self.locals[id(x)] = self.names.of(self.values, x)
+                    out.append(ir.Let(self.locals[id(x)], value, False, self.next_line()))
+            elif id(x) not in seen and id(x) not in self.locals:
+                seen.add(id(x))
+                waiting.append((x, True))
+                waiting += [(c, False) for c in reversed(ir.children(x))]
+
+    def text(self, e: ir.Expr) -> ir.Expr:
+        """A value over the names given so far."""
+        if id(e) in self.locals:
+            return ir.Var(e.type, self.locals[id(e)])
+        if isinstance(e, ir.Var):
+            return ir.Var(e.type, self.variables[e.name])
+        return ir.rebuild(e, tuple(map(self.text, ir.children(e))))

@@ -1,0 +1,1 @@
+"""What makes a selection of functions ready to print."""

@@ -1,0 +1,1 @@
+"""Simplifications of single values, one family each."""

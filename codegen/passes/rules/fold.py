@@ -1,0 +1,106 @@
+"""Constant folding: an operation on constants is its value, correctly rounded.
+
+before   1.0 - 0.25      exp(0.0)     5 // 2
+after    0.75            1.0          2
+
+Floats are computed in float64 and rounded once: every table permits the float32 nearest to the exact result.
+Not folded: what would overflow, be no number, or lie below the normal numbers, where targets differ.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from codegen.evaluate.arrays import INTEGER_TYPES, arithmetic
+from codegen.intervals.numbers import LARGEST, SMALLEST
+from codegen.ir import nodes as ir
+from codegen.ir.types import BOOL, F32, I32, U32, Scalar, Type, Vector
+from codegen.ops import BUILTINS, OPERATORS
+from codegen.passes.ssa.values import Rewrite, Values, constant_components
+
+NAME = "fold"
+FLOAT = "constants, rounded once: the float32 nearest to the exact result, which every target permits"
+WHOLE = "constants of integers or truth values: exact"
+
+
+def constants(values: Values, e: ir.Expr) -> Rewrite | None:
+    """Folds an operation all of whose operands are constants."""
+    if not isinstance(e, ir.Unary | ir.Binary | ir.Builtin | ir.Convert | ir.Select):
+        return None
+    if isinstance(e, ir.Select):
+        return _decided(e)
+    operands = [constant_components(c) for c in ir.children(e)]
+    if any(o is None for o in operands):
+        return None
+    columns = [_column(c.type, o) for c, o in zip(ir.children(e), operands, strict=True) if o is not None]
+    with np.errstate(all="ignore"):
+        found = _computed(e, columns)
+    if found is None:
+        return None
+    element = e.type.element if isinstance(e.type, Vector) else e.type
+    assert isinstance(element, Scalar)
+    with np.errstate(over="ignore"):
+        numbers = [_number(element, x) for x in np.atleast_1d(found).ravel().tolist()]
+    if any(n is None for n in numbers):
+        return None
+    parts = tuple(values.build(ir.Const(element, n)) for n in numbers if n is not None)
+    whole = values.build(ir.Construct(e.type, parts)) if isinstance(e.type, Vector) else parts[0]
+    return Rewrite(whole, NAME, FLOAT if element == F32 else WHOLE)
+
+
+def _decided(e: ir.Select) -> Rewrite | None:
+    if isinstance(e.condition, ir.Const):
+        chosen = e.if_true if e.condition.value else e.if_false
+        return Rewrite(chosen, NAME, f"the condition is {str(e.condition.value).lower()}")
+    return None
+
+
+def _column(type_: Type, numbers: tuple[float | int | bool, ...]) -> Any:
+    element = type_.element if isinstance(type_, Vector) else type_
+    assert isinstance(element, Scalar)
+    dtype = np.float64 if element == F32 else INTEGER_TYPES[element]
+    a = np.array(numbers, dtype)
+    return a[None, :] if isinstance(type_, Vector) else a
+
+
+def _computed(e: ir.Expr, columns: list[Any]) -> Any:
+    m = arithmetic("float64").namespace
+    match e:
+        case ir.Convert():
+            return _converted(e.type, columns[0])
+        case ir.Builtin():
+            return BUILTINS[e.op].meaning(m, *columns)
+        case ir.Unary():
+            return OPERATORS[e.op].meaning(m, columns[0])
+        case ir.Binary():
+            a, b = columns
+            if e.op in ("//", "%") and (b == 0).any():
+                return None
+            if a.ndim != b.ndim:
+                a, b = (a[:, None], b) if a.ndim < b.ndim else (a, b[:, None])
+            return OPERATORS[e.op].meaning(m, a, b)
+        case _:
+            return None
+
+
+def _converted(type_: Type, a: Any) -> Any:
+    if type_ == F32:
+        return a.astype(np.float64)
+    if a.dtype.kind == "f":
+        least, most = (-(2**31), 2**31 - 1) if type_ == I32 else (0, 2**32 - 1)
+        whole = np.trunc(a)
+        return None if (whole < least).any() or (whole > most).any() else whole.astype(np.int64)
+    return a.astype(np.int64).astype(np.uint32 if type_ == U32 else np.int32)
+
+
+def _number(element: Scalar, x: Any) -> float | int | bool | None:
+    if element == BOOL:
+        return bool(x)
+    if element != F32:
+        return int(x)
+    value = float(np.float32(x))
+    if not abs(value) <= LARGEST or 0.0 < abs(value) < SMALLEST:
+        return None
+    return value + 0.0  # -0 becomes 0: nothing relies on the sign of a zero

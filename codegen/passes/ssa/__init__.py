@@ -1,0 +1,1 @@
+"""Functions as values in single assignment, on which the other passes work."""

@@ -1,0 +1,1 @@
+"""The proof that a reduced function is what was asked for."""

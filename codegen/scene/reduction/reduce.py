@@ -1,0 +1,348 @@
+"""From the general function of a scene to the one that is written, for one target.
+
+The exact passes come first and are kept as they are. With a budget, the cheaper forms follow, each only while
+the error of everything together, predicted over points, stays within it: whole exponents by multiplication,
+variants at call sites, looser forms of the geometry, numbers for terms that hardly vary.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from codegen.ir import nodes as ir
+from codegen.ir.domains import Unit
+from codegen.ir.types import VEC3
+from codegen.library import Library
+from codegen.passes.analysis.operations import operations
+from codegen.passes.rules.powers import LARGEST, ROWS
+from codegen.passes.specialise import Specialised, specialise
+from codegen.passes.ssa.text import show
+from codegen.scene.description.document import Scene
+from codegen.scene.description.lights import UNROLLED
+from codegen.scene.general import General
+from codegen.scene.proof.errors import Measured, Reference
+from codegen.scene.proof.points import Points
+from codegen.scene.reduction.drops import Term, terms, without
+from codegen.scene.reduction.knowledge import Knowledge, knowledge, model_ranges
+from codegen.scene.reduction.loosen import BUNDLES, SPLAT, loosened
+from codegen.scene.reduction.prices import Prices
+from codegen.scene.reduction.scales import gathered
+from codegen.scene.reduction.search import Found, Search
+from codegen.scene.reduction.sites import Path, plainly_named
+
+SMALLEST_GAIN = 0.005
+"""Share of the price that a form has to save to be worth its error."""
+MOST_DROPS = 4
+WITNESSES = 50
+"""Points that have to see the loss of a term: what hardly any point reaches is not judged by points."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One approximation: what, why it is cheaper, and the predicted error of everything up to it.
+
+    kind   variant, power, form or term
+    brief  the same in few words, for the comment of the result
+    """
+
+    kind: str
+    what: str
+    why: str
+    error: float
+    saving: str = ""
+    refused: tuple[str, ...] = ()
+    brief: str = ""
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """What the search made of a scene for one target.
+
+    exact    after exact passes only
+    final    what is written; the same as exact where no approximation fits
+    changes  the approximations in order
+    error    predicted error of final, over the points of the search
+    log      the steps of the exact passes
+    """
+
+    target: str
+    exact: Specialised
+    final: Specialised
+    changes: tuple[Change, ...]
+    error: Measured
+    prices: str
+    choices: dict[Path, str] = field(default_factory=dict)
+
+
+@dataclass
+class Reducer:
+    """Reduces one scene; what does not depend on the target is done once."""
+
+    library: Library
+    general: General
+    knowledge: Knowledge
+    reference: Reference
+    search: Search
+    name: str
+    _made: dict[tuple[object, ...], Specialised] = field(default_factory=dict)
+    _cleaned: dict[tuple[ir.Stmt, ...], Specialised] = field(default_factory=dict)
+    _errors: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
+    _screened: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
+    _without: dict[tuple[ir.Stmt, ...], list[tuple[Term, ir.Function]]] = field(default_factory=dict)
+    _gathered: dict[tuple[ir.Stmt, ...], ir.Function | None] = field(default_factory=dict)
+
+    @staticmethod
+    def of(library: Library, scene: Scene, general: General, points: Points) -> Reducer:
+        """The reducer of a scene over points of it; `library` holds the general function."""
+        reference = Reference.of(library, general.function.name, points)
+        search = Search(library, general, reference, model_ranges(scene, general))
+        return Reducer(library, general, knowledge(scene, general), reference, search, scene.function)
+
+    def exact(self) -> Specialised:
+        """The function after exact passes only."""
+        return self.specialised({}, 0)
+
+    def specialised(self, choices: dict[Path, str], powers: int) -> Specialised:
+        """The general function with variants at call sites, specialised to what the scene knows."""
+        key = (tuple(sorted(choices.items())), powers)
+        if key not in self._made:
+            library, name = self.library, self.general.function.name
+            if choices:
+                functions = self.search.functions(choices, f"{self.general.function.name}_chosen")
+                library, name = library.with_functions(functions), functions[-1].name
+            known = self.knowledge
+            made = specialise(
+                library,
+                name,
+                known.constants,
+                known.aliases,
+                known.ranges,
+                known.facts,
+                new_name=self.name,
+                powers=powers,
+                unroll=UNROLLED,
+            )
+            self._made[key] = replace(made, function=plainly_named(made.function))
+        return self._made[key]
+
+    def reduced(self, prices: Prices, budget: float) -> Reduced:
+        """The cheapest function within the budget that the search finds for a target."""
+        exact = self.exact()
+        error = self.error(exact)
+        changes: list[Change] = []
+        current, choices = exact, {}
+        if budget > 0.0:
+            powers = self.powers(exact, budget, changes)
+            found = self.search.find(prices, budget, frozenset(ROWS) if powers else frozenset())
+            choices = self.needed(found.choices, powers)
+            changes += _variants(found, choices, prices)
+            current = self.specialised(choices, powers)
+            current = self.loosened(current, prices, budget, changes)
+            current = self.dropped(current, prices, budget, changes)
+            current = self.gathered(current, prices, budget, changes)
+            error = self.error(current)
+        return Reduced(prices.target, exact, current, tuple(changes), error, prices.source, choices)
+
+    def error(self, made: Specialised) -> Measured:
+        """The error of a specialised function over the points, evaluated in float32."""
+        body = made.function.body
+        if body not in self._errors:
+            library = self.library.with_functions([made.function])
+            self._errors[body] = self.reference.error(library, made.function.name)
+        return self._errors[body]
+
+    def passes(self, function: ir.Function, budget: float) -> bool:
+        """Whether the budget holds the error of a function over the few first points."""
+        if function.body not in self._screened:
+            library = self.library.with_functions([function])
+            self._screened[function.body] = self.search.screen.error(library, function.name)
+        return self._screened[function.body].fits(budget)
+
+    def fits(self, made: Specialised, budget: float) -> Measured | None:
+        """The error of a function where the budget holds it."""
+        if made.function.body not in self._errors and not self.passes(made.function, budget):
+            return None
+        error = self.error(made)
+        return error if error.fits(budget) else None
+
+    def powers(self, exact: Specialised, budget: float, changes: list[Change]) -> int:
+        """Whole exponents as multiplications, where there are any and the budget holds their error."""
+        made = self.specialised({}, LARGEST)
+        if made.function.body == exact.function.body:
+            return 0
+        error = self.fits(made, budget)
+        if error is None:
+            return 0
+        steps = [step for step in made.log if step.name == "powers"]
+        what = "; ".join(dict.fromkeys(step.what for step in steps))
+        why = "a constant whole exponent needs no logarithm"
+        changes.append(Change("power", what, why, error.largest, brief="whole exponents as products"))
+        return LARGEST
+
+    def needed(self, choices: dict[Path, str], powers: int) -> dict[Path, str]:
+        """The choices without those in terms that the exact passes removed."""
+        whole = self.specialised(choices, powers).function.body
+        for path in sorted(choices, reverse=True):
+            fewer = {p: name for p, name in choices.items() if p != path}
+            if self.search.differ(choices, fewer):
+                continue  # a term that changes values is there
+            if self.specialised(fewer, powers).function.body == whole:
+                choices = fewer
+        return choices
+
+    def loosened(
+        self, made: Specialised, prices: Prices, budget: float, changes: list[Change]
+    ) -> Specialised:
+        """Forms that lose digits near the hair, where these digits are not needed."""
+        joined = loosened(made.function, SPLAT)
+        if joined is not None:
+            made = self.cleaned(joined)
+        for bundle in BUNDLES:
+            function, words = made.function, []
+            for form in bundle:
+                looser = loosened(function, form)
+                if looser is not None:
+                    function = looser
+                    words.append(form.words)
+            if words:
+                made = self.taken(made, function, "; ".join(words), prices, budget, changes)
+        return made
+
+    def taken(
+        self,
+        made: Specialised,
+        function: ir.Function,
+        what: str,
+        prices: Prices,
+        budget: float,
+        changes: list[Change],
+    ) -> Specialised:
+        """A changed function where it is cheaper and the budget holds its error; else the one before."""
+        if not self.passes(function, budget):
+            return made
+        candidate = self.cleaned(function)
+        before, after = prices.body(made.function), prices.body(candidate.function)
+        if after > (1.0 - SMALLEST_GAIN) * before:
+            return made
+        error = self.fits(candidate, budget)
+        if error is None:
+            return made
+        changes.append(Change("form", what, _fewer(made, candidate), error.largest))
+        return candidate
+
+    def gathered(
+        self, made: Specialised, prices: Prices, budget: float, changes: list[Change]
+    ) -> Specialised:
+        """Fewer multiplications by constants; twice, since what is cleaned may show more."""
+        for _ in range(2):
+            body = made.function.body
+            if body not in self._gathered:
+                self._gathered[body] = gathered(made.function)
+            function = self._gathered[body]
+            if function is not None:
+                made = self.taken(made, function, "constant factors gathered", prices, budget, changes)
+        return made
+
+    def dropped(self, made: Specialised, prices: Prices, budget: float, changes: list[Change]) -> Specialised:
+        """Numbers for terms that hardly vary."""
+        for _ in range(MOST_DROPS):
+            step = self.drop(made, prices, budget)
+            if step is None:
+                break
+            made, change = step
+            changes.append(change)
+        return made
+
+    def drop(self, made: Specialised, prices: Prices, budget: float) -> tuple[Specialised, Change] | None:
+        price = prices.body(made.function)
+        best: tuple[float, Specialised, Change] | None = None
+        for term, replaced in self.without_terms(made.function):
+            if not self.passes(replaced, budget):
+                continue
+            candidate = self.cleaned(replaced)
+            gain = price - prices.body(candidate.function)
+            if gain <= SMALLEST_GAIN * price or (best is not None and gain <= best[0]):
+                continue
+            error = self.fits(candidate, budget)
+            if error is None or self.witnesses(made, candidate) < WITNESSES:
+                continue
+            what = f"{_shown(made.function, term.expression)} -> {show(term.replacement)}"
+            why = f"it stays within [{term.low:.3g}, {term.high:.3g}]; {_fewer(made, candidate)}"
+            best = gain, candidate, Change("term", what, why, error.largest)
+        return None if best is None else (best[1], best[2])
+
+    def without_terms(self, function: ir.Function) -> list[tuple[Term, ir.Function]]:
+        """The terms of a function that a number may stand for, each with the function that has the number."""
+        if function.body not in self._without:
+            few = self.search.screen.points.inputs
+            given = {p.name: few[p.name] for p in function.parameters}
+            found = terms(self.library, function, given)
+            self._without[function.body] = [(term, without(function, term)) for term in found]
+        return self._without[function.body]
+
+    def witnesses(self, one: Specialised, other: Specialised) -> int:
+        """How many points tell two functions apart."""
+        first, second = (
+            self.reference.values(self.library.with_functions([made.function]), made.function.name)
+            for made in (one, other)
+        )
+        return int((first != second).any(axis=1).sum())
+
+    def cleaned(self, function: ir.Function) -> Specialised:
+        """A changed function run through the exact passes again."""
+        if function.body not in self._cleaned:
+            self._cleaned[function.body] = self._clean(function)
+        return self._cleaned[function.body]
+
+    def _clean(self, function: ir.Function) -> Specialised:
+        library = self.library.with_functions([function])
+        names = {p.name for p in function.parameters}
+        facts = [f for f in self.knowledge.facts if all(n in names for n in _named(f[0]))]
+        facts += _lengths(function)
+        return specialise(library, function.name, facts=facts, new_name=self.name, unroll=UNROLLED)
+
+
+def _lengths(function: ir.Function) -> list[tuple[str, float, float]]:
+    """That a cross product of two unit parameters is no longer than 1."""
+    units = {p.name for p in function.parameters if isinstance(p.domain, Unit) and p.type == VEC3}
+    found = {}
+    for e in ir.expressions(function.body):
+        if isinstance(e, ir.Builtin) and e.op == "cross":
+            pair = [a.name for a in e.args if isinstance(a, ir.Var) and a.name in units]
+            if len(pair) == 2:
+                product = f"cross({pair[0]}, {pair[1]})"
+                found[f"dot({product}, {product})"] = 0.0, 1.0
+    return [(expression, low, high) for expression, (low, high) in found.items()]
+
+
+def _named(expression: str) -> list[str]:
+    return [part.strip() for part in expression.removeprefix("dot(").removesuffix(")").split(",")]
+
+
+def _variants(found: Found, choices: dict[Path, str], prices: Prices) -> Sequence[Change]:
+    return [
+        Change(
+            "variant",
+            f"{s.new} for {s.old} in {s.caller}",
+            "the cheapest whose domain covers the scene's ranges",
+            s.together,
+            f"{s.saving:.3g} {prices.unit}, {prices.source}",
+            s.refused,
+            s.new,
+        )
+        for s in found.steps
+        if s.path in choices
+    ]
+
+
+def _fewer(before: Specialised, after: Specialised) -> str:
+    old, new = sum(operations(before.function).values()), sum(operations(after.function).values())
+    return f"{old} -> {new} operations"
+
+
+def _shown(function: ir.Function, e: ir.Expr) -> str:
+    for s in ir.statements(function.body):
+        if isinstance(s, ir.Let) and s.value is e:
+            return s.name
+    return show(e)

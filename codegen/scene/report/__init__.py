@@ -1,0 +1,1 @@
+"""What is written of a scene: the file of each target and the report."""
