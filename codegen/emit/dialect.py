@@ -26,7 +26,7 @@ class Dialect:
     structs      constructors: "call": S(a, b), "compound": (S){a, b}
     conversions  "call": float(x), "cast": (float)x
     conditional  "ternary": c ? a : b, "select": select(b, a, c)
-    guard        whether the text carries an include guard
+    guard        whether definitions carry guards
     precise      qualifier of a variable whose computation may be neither reordered nor fused ("" where the
                  dialect has none)
     local        qualifier put before every local that holds floats ("" for none)

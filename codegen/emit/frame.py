@@ -1,10 +1,11 @@
-"""What stands around the definitions of a file: its header, and an include guard where there is one."""
+"""A file around its definitions: the header, and their guards where the dialect has any."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from codegen.emit import wrap
+from codegen.emit.definition import Definition, guarded
 from codegen.emit.dialect import Dialect
 from codegen.version import VERSION
 
@@ -32,17 +33,6 @@ def header(dialect: Dialect, command: str, origin: str, conventions: str) -> lis
     ]
 
 
-def guard_name(prefix: str, *parts: str) -> str:
-    """The macro of an include guard: VAIR_SIN_ANGLE_GLSL_INCLUDED."""
-    return "_".join((prefix.strip("_"), *parts, "included")).upper()
-
-
-def file_text(dialect: Dialect, head: Sequence[str], guard: str, body: Sequence[str]) -> str:
-    """The text of a file; `guard` is the macro, for dialects that have a preprocessor."""
-    lines = [*head, ""]
-    if dialect.guard:
-        lines += [f"#ifndef {guard}", f"#define {guard}", ""]
-    lines += body
-    if dialect.guard:
-        lines += ["", "#endif"]
-    return "\n".join(lines) + "\n"
+def file_text(dialect: Dialect, head: Sequence[str], definitions: Sequence[Definition]) -> str:
+    """The text of a file."""
+    return "\n".join([*head, "", *guarded(definitions, dialect)]) + "\n"

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import replace
 from string import Template
 
 from codegen.bounds import Bound
 from codegen.emit import comment, wrap
+from codegen.emit.collisions import check_collisions
+from codegen.emit.definition import Definition, plain, read_definitions
 from codegen.emit.dialect import Dialect
-from codegen.emit.frame import DIRECTIONS, FINITE, file_text, guard_name, header
+from codegen.emit.frame import DIRECTIONS, FINITE, file_text, header
 from codegen.emit.stmt import StmtPrinter
 from codegen.guarantees import guarantees, phrase, table_of
 from codegen.half import check_half, half_forms, half_hash, half_rules
@@ -18,7 +19,7 @@ from codegen.ir.nodes import StructDef
 from codegen.ir.types import TEXTURE
 from codegen.ir.unit import Unit
 from codegen.library import Library, Selection
-from codegen.names import check_emitted, check_prefix
+from codegen.names import check_prefix
 from codegen.passes import run_passes
 from codegen.passes.half import Version, half_structs, half_versions
 
@@ -50,21 +51,23 @@ def emit(
         selection = library.select(usable if names is None else names)
     else:
         selection = library.select(names)
-    for name in (*(f.name for f in selection.functions), *(s.name for s in selection.structs)):
-        check_emitted(prefix + name, prefix)
-    body = emit_selection(library, dialect, selection, prefix)
-    guard = _guard(dialect, prefix, names)
+    defined = definitions(library, dialect, selection, prefix)
     source_hash = selection.source_hash
     if dialect.arithmetic == "half":
         source_hash = half_hash(library, source_hash)
     head = _header(dialect, source_hash, names, prefix)
     if dialect.arithmetic == "half" and dialect.half_enable:
         head += ["", dialect.half_enable]
-    return file_text(dialect, head, guard, body)
+    return file_text(dialect, head, defined)
 
 
 def emit_selection(library: Library, dialect: Dialect, selection: Selection, prefix: str) -> list[str]:
-    """The definitions alone, with their comments."""
+    """The definitions alone, with their comments and without guards."""
+    return plain(definitions(library, dialect, selection, prefix))
+
+
+def definitions(library: Library, dialect: Dialect, selection: Selection, prefix: str) -> list[Definition]:
+    """What a selection defines, dependencies first; raises UserError for a prefix whose names collide."""
     looks_up = any(p.type == TEXTURE for f in selection.functions for p in f.parameters)
     library_text = dialect.lookup_library if looks_up else ""
     printer = StmtPrinter(replace(dialect, lookup=f"{prefix}lookup_level") if library_text else dialect)
@@ -72,21 +75,20 @@ def emit_selection(library: Library, dialect: Dialect, selection: Selection, pre
     rename = comment.renamer(public_names, prefix)
     versions = _versions(library, dialect, selection)
     unit = Unit(tuple(v.function for v in versions), _structs(dialect, selection))
+    check_collisions(unit, dialect, prefix)
     unit = run_passes(unit, prefix, named_results=bool(dialect.local))
-    blocks: list[list[str]] = []
+    found: list[Definition] = []
     if library_text:
-        blocks.append(Template(library_text).substitute(prefix=prefix).rstrip().split("\n"))
+        found += read_definitions(Template(library_text).substitute(prefix=prefix))
     for original, renamed in zip(selection.structs, unit.structs, strict=True):
-        blocks.append([*comment.struct_comment(original, rename), *printer.struct(renamed.type)])
+        words = comment.struct_comment(original, rename)
+        found.append(Definition(renamed.type.name, tuple(words), tuple(printer.struct(renamed.type))))
     for version, f in zip(versions, unit.functions, strict=True):
         bounds = bounds_of(library, version)
         promised = guaranteed_of(library, version, dialect)
         words = comment.function_comment(version.source, bounds, dialect.target, rename, promised)
-        blocks.append([*words, *printer.function(f)])
-    lines: list[str] = []
-    for block in blocks:
-        lines += [*block, ""]
-    return lines[:-1]
+        found.append(Definition(f.name, tuple(words), tuple(printer.function(f))))
+    return found
 
 
 def bounds_of(library: Library, version: Version) -> Sequence[Bound]:
@@ -114,15 +116,6 @@ def _versions(library: Library, dialect: Dialect, selection: Selection) -> tuple
 
 def _structs(dialect: Dialect, selection: Selection) -> tuple[StructDef, ...]:
     return half_structs(selection.structs) if dialect.arithmetic == "half" else selection.structs
-
-
-def _guard(dialect: Dialect, prefix: str, names: Sequence[str] | None) -> str:
-    if names is None:
-        return guard_name(prefix, dialect.target)
-    if len(names) == 1:
-        return guard_name(prefix, names[0], dialect.target)
-    digest = hashlib.sha256("\n".join(names).encode()).hexdigest()[:8]
-    return guard_name(prefix, digest, dialect.target)
 
 
 CONVENTIONS = (

@@ -2,7 +2,7 @@
 
 Plan.
   determinism  the same bytes again, in a process with another hash seed, and in the committed includes
-  form         include guard where the dialect has one, no other directive, header lines, ASCII, 100 columns
+  form         guards where the dialect has them, no other directive, header lines, ASCII, 100 columns
   names        every global name carries the prefix, none is reserved anywhere (by an independent parser)
   comments     every function documents each parameter, its result and its source
   compilers    the whole library, which the committed includes equal, in every dialect; each public function
@@ -21,6 +21,7 @@ from pathlib import Path
 import pytest
 
 from codegen.backends import TARGETS, dialect
+from codegen.emit.definition import read_definitions
 from codegen.emit.dialect import Dialect
 from codegen.emit.module import DEFAULT_PREFIX, emit
 from codegen.emit.parameter import described
@@ -28,7 +29,7 @@ from codegen.errors import UserError
 from codegen.generate import include_name
 from codegen.ir.domains import Domain, Finite, Interval, Length, Unit
 from codegen.library import Library, load_library
-from codegen.names import reserved
+from codegen.names import where_reserved
 from codegen.version import VERSION
 from conformance.unit.support.dialects import DIALECTS, ONE_PER_TARGET, dialect_id, validate
 from conformance.unit.support.neutral import find, parse, text_of
@@ -82,13 +83,21 @@ def test_header_names_the_product_its_options_and_its_licence(dialect: Dialect) 
 
 
 @all_dialects
-def test_only_directives_are_the_include_guard(dialect: Dialect) -> None:
-    directives = [line for line in text_in(dialect).splitlines() if line.lstrip().startswith("#")]
+def test_only_directives_are_one_guard_per_definition(dialect: Dialect) -> None:
+    """Each names what it guards; no two are equal."""
+    text = text_in(dialect)
+    directives = [line for line in text.splitlines() if line.lstrip().startswith("#")]
     if not GUARD[dialect.target]:
         assert directives == []
         return
-    name = f"VAIR_{dialect.target.upper()}_INCLUDED"
-    assert directives == [f"#ifndef {name}", f"#define {name}", "#endif"]
+    guards = [line.split()[1] for line in directives[::3]]
+    expected = [word for g in guards for word in (f"#ifndef {g}", f"#define {g}", "#endif")]
+    assert directives == expected
+    assert len(set(guards)) == len(guards)
+    names = [d.name for d in read_definitions(text)]
+    assert [g.rpartition("_")[0] for g in guards if "LOOKUP" not in g] == [
+        n.upper() for n in names if "lookup" not in n
+    ]
 
 
 @all_dialects
@@ -137,7 +146,7 @@ def test_every_global_name_carries_the_prefix(dialect: Dialect) -> None:
         own = [name for name in found if name not in dialect.types.values()]
         structs = {prefix + s.name for s in selection.structs}
         assert [name for name in own if not name.startswith(prefix) and name not in structs] == []
-        assert not set(own) & set(reserved())
+        assert not [name for name in own if where_reserved(name)]
 
 
 def comments(text: str, prefix: str) -> dict[str, str]:
@@ -250,7 +259,9 @@ def test_each_function_brings_what_it_needs_and_nothing_else() -> None:
         assert defined == needed
 
 
-@pytest.mark.parametrize("prefix", ["", "1st_", "two__", "_own", "gl_", "GL_", "cl_", "a-b", "fär_", "a b"])
+@pytest.mark.parametrize(
+    "prefix", ["", "1st_", "two__", "_own", "gl_", "GL_", "cl_", "Cl_", "webgl_", "a-b", "fär_", "a b"]
+)
 def test_prefix_that_cannot_start_a_name_is_refused(prefix: str) -> None:
     with pytest.raises(UserError, match="prefix"):
         emit(load_library(), dialect("glsl"), ["sin_angle"], prefix)
@@ -262,6 +273,30 @@ def test_prefix_that_makes_a_reserved_name_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(UserError, match='prefix "re" makes "reflect", which is a'):
         emit(library, dialect("glsl"), prefix="re")
+
+
+def test_prefix_that_makes_a_keyword_of_hlsl_in_any_case_is_refused(tmp_path: Path) -> None:
+    library = library_of(tmp_path, "def nique(x: X) -> f32:\n    return x\n")
+    with pytest.raises(UserError, match='makes "TECHnique", which is a keyword of HLSL in any case'):
+        emit(library, dialect("glsl"), prefix="TECH")
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("def b(x: X, ab: X) -> f32:\n    return x + ab\n", "a parameter of b"),
+        ("def b(x: X) -> f32:\n    ab = x * x\n    return ab\n", "a local of b"),
+        ("@struct\nclass S:\n    ab: X\ndef b(s: S) -> f32:\n    return s.ab\n", "a field of S"),
+        ("def b(b_sampler: X, ab: X) -> f32:\n    return b_sampler * ab\n", "a parameter of b"),
+    ],
+)
+@one_per_target
+def test_prefix_that_makes_the_name_of_a_variable_is_refused(
+    text: str, what: str, dialect: Dialect, tmp_path: Path
+) -> None:
+    """A function that a local hides cannot be called."""
+    with pytest.raises(UserError, match=f'prefix "a" makes "ab", which is {what}'):
+        emit(library_of(tmp_path, text), dialect, prefix="a")
 
 
 def hash_of(folder: Path, dialect: Dialect) -> str:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from codegen.backends import dialect
-from codegen.emit.frame import DIRECTIONS, FINITE, file_text, guard_name, header
+from codegen.emit.frame import DIRECTIONS, FINITE, file_text, header
 from codegen.emit.literal import shortest
-from codegen.emit.module import DEFAULT_PREFIX, emit_selection
+from codegen.emit.module import DEFAULT_PREFIX, definitions, emit_selection
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Interval, number
 from codegen.library import Library
@@ -74,19 +74,21 @@ def _plain(text: str) -> str:
     return text.encode("ascii", "replace").decode("ascii").replace('"', "'")
 
 
-def emitted(library: Library, scene: Scene, general: General, reduced: Reduced) -> str:
+def emitted(
+    library: Library, scene: Scene, general: General, reduced: Reduced, prefix: str = DEFAULT_PREFIX
+) -> str:
     """The text of the target's file."""
     chosen = dialect(reduced.target, scene.dialects[reduced.target])
     extended = library.with_functions([documented(scene, general, reduced)])
     selection = extended.select([scene.function])
-    body = emit_selection(extended, chosen, selection, DEFAULT_PREFIX)
+    defined = definitions(extended, chosen, selection, prefix)
     head = header(
         chosen,
         f"vair scene {scene.path.name}, target {chosen.target}, dialect {chosen.name}",
         f"Budget {_plain(scene.budget_text)}; source hash {selection.source_hash}",
         f"{DIRECTIONS} Colours are linear RGB. {FINITE}",
     )
-    return file_text(chosen, head, guard_name(DEFAULT_PREFIX, scene.function, reduced.target), body)
+    return file_text(chosen, head, defined)
 
 
 def line_counts(

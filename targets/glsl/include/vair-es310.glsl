@@ -8,9 +8,8 @@
 // colours linear RGB. Finite input inside the stated domain gives a finite result. An error is
 // declared: no driver measured exceeds it; guaranteed is what the specification permits at worst.
 
-#ifndef VAIR_GLSL_INCLUDED
-#define VAIR_GLSL_INCLUDED
-
+#ifndef VAIR_FRAME_AAA583FD
+#define VAIR_FRAME_AAA583FD
 // Right-handed orthonormal frame; local coordinates are x along the tangent, y bitangent, z normal.
 //   tangent    unit vector, x axis
 //   bitangent  unit vector, y axis: normal x tangent
@@ -20,7 +19,10 @@ struct vair_Frame {
     highp vec3 bitangent;
     highp vec3 normal;
 };
+#endif
 
+#ifndef VAIR_STRANDANGLES_437C7337
+#define VAIR_STRANDANGLES_437C7337
 // Angles of light and viewer to a strand.
 //   cos_l   cosine of the angle between tangent and light: t.l; in [-1, 1]
 //   cos_v   cosine of the angle between tangent and viewer: t.v; in [-1, 1]
@@ -34,7 +36,10 @@ struct vair_StrandAngles {
     highp float sin_v;
     highp float defect;
 };
+#endif
 
+#ifndef VAIR_FURCOAT_1EE265D8
+#define VAIR_FURCOAT_1EE265D8
 // Average geometry of the hairs around a point; one unit of length throughout.
 //   density      hairs per unit of skin area; in [0, 1e9]
 //   hair_length  length of a hair; in [0, 1000]
@@ -46,7 +51,10 @@ struct vair_FurCoat {
     highp float radius_base;
     highp float radius_tip;
 };
+#endif
 
+#ifndef VAIR_FURGEOMETRY_E4D16D41
+#define VAIR_FURGEOMETRY_E4D16D41
 // One light and the viewer as the hairs of a coat see them.
 //   sin_l           sine of the angle between hair and light; in [0, 1]
 //   azimuth_cosine  cosine of the angle between light and viewer around the hair; in [-1, 1]
@@ -62,7 +70,10 @@ struct vair_FurGeometry {
     highp float depth_view;
     highp float depth_light;
 };
+#endif
 
+#ifndef VAIR_FURWEIGHTS_8E55A065
+#define VAIR_FURWEIGHTS_8E55A065
 // What hair and skin contribute to the light that leaves a coat.
 //   hair  weight of the reflectance of a single hair; in [0, 1]
 //   skin  weight of the reflectance of the skin; in [0, 1]
@@ -70,7 +81,10 @@ struct vair_FurWeights {
     highp float hair;
     highp float skin;
 };
+#endif
 
+#ifndef VAIR_FUROPTICS_30482EFB
+#define VAIR_FUROPTICS_30482EFB
 // How the hairs of a coat reflect, transmit and shadow.
 //   k_diffuse     diffuse colour of a hair; in [0, 1]
 //   k_specular    colour of the highlight; in [0, 1]
@@ -94,7 +108,10 @@ struct vair_FurOptics {
     highp float cos_lit;
     highp float overlap;
 };
+#endif
 
+#ifndef VAIR_FURAVERAGE_3DB71E5E
+#define VAIR_FURAVERAGE_3DB71E5E
 // Average direction of the hairs in a footprint, and how far single hairs stray from it.
 //   tangent   mean hair direction; unit vector
 //   variance  variance of a hair direction about the mean along each perpendicular axis, in radian
@@ -103,7 +120,10 @@ struct vair_FurAverage {
     highp vec3 tangent;
     highp float variance;
 };
+#endif
 
+#ifndef VAIR_DUALPARABOLOID_1535A91D
+#define VAIR_DUALPARABOLOID_1535A91D
 // A place in a dual-paraboloid map.
 //   uv    texture coordinates in [0, 1]^2
 //   back  1 for the half around -z, 0 for the half around +z; in [0, 1]
@@ -111,7 +131,10 @@ struct vair_DualParaboloid {
     highp vec2 uv;
     highp float back;
 };
+#endif
 
+#ifndef VAIR_BESSEL_I0E_3461110E
+#define VAIR_BESSEL_I0E_3461110E
 // Scaled modified Bessel function e^-|x| I0(x), the normaliser of a wrapped Gaussian lobe.
 //   x           any sign; held at |x| = 131072 beyond; in [-100000, 100000]
 //   returns     e^-|x| I0(x), in (0, 1]
@@ -132,7 +155,10 @@ highp float vair_bessel_i0e(highp float x) {
     highp float denominator = 1.0 + m * (2.318332 + m * (2.4194713 + m * tail));
     return sqrt(numerator / denominator);
 }
+#endif
 
+#ifndef VAIR_BESSEL_I0E_SHORT_D211195A
+#define VAIR_BESSEL_I0E_SHORT_D211195A
 // Scaled modified Bessel function e^-|x| I0(x) to 2.2e-4, at half the cost. Variant of
 // vair_bessel_i0e.
 //   x           any sign; held at |x| = 131072 beyond; in [-100000, 100000]
@@ -149,7 +175,10 @@ highp float vair_bessel_i0e_short(highp float x) {
         * (2.3635423 + m * (2.6940675 + m * (1.0433983 + m * 1.1907202)));
     return sqrt(numerator / denominator);
 }
+#endif
 
+#ifndef VAIR_BESSEL_I0E_COARSE_7F571A4C
+#define VAIR_BESSEL_I0E_COARSE_7F571A4C
 // Scaled modified Bessel function e^-|x| I0(x) to 2.2e-3. Variant of vair_bessel_i0e.
 //   x           any sign; held at |x| = 131072 beyond; in [-100000, 100000]
 //   returns     e^-|x| I0(x), in (0, 1]
@@ -164,7 +193,10 @@ highp float vair_bessel_i0e_coarse(highp float x) {
     highp float denominator = 1.0 + m * (2.449919 + m * (2.0552883 + m * 3.114644));
     return sqrt(numerator / denominator);
 }
+#endif
 
+#ifndef VAIR_EXPREL_SERIES_709BEFB1
+#define VAIR_EXPREL_SERIES_709BEFB1
 // Polynomial for (1 - e^-x) / x.
 //   x        in [0, 0.7]
 //   returns  (1 - e^-x) / x, in [0.719, 1]; 1 at x = 0
@@ -175,7 +207,10 @@ highp float vair_exprel_series(highp float x) {
     return 1.0 + x * (-0.4999993 + x * (0.166653 + x
         * (-0.041577216 + x * (0.008073649 + x * (-0.0010359237)))));
 }
+#endif
 
+#ifndef VAIR_EXPREL_NEG_1AEAD0F4
+#define VAIR_EXPREL_NEG_1AEAD0F4
 // Mean of e^-u over 0 <= u <= x, which is (1 - e^-x) / x.
 //   x           optical depth, at least 0; in [0, 1e30]
 //   returns     (1 - e^-x) / x, in (0, 1], with flat relative error
@@ -190,7 +225,10 @@ highp float vair_exprel_neg(highp float x) {
     highp float quotient = (1.0 - exp(-min(x, 80.0))) / max(x, 0.7);
     return x < 0.7 ? series : quotient;
 }
+#endif
 
+#ifndef VAIR_GROWTH_RATIONAL_95FA1E5F
+#define VAIR_GROWTH_RATIONAL_95FA1E5F
 // Function h for which x h(x) imitates e^x - 1.
 //   x        at least 0; in [0, 1e30]
 //   returns  h(x), with 1 / (1 + x h) = e^-x to 3.9e-4, x h / (1 + x h) = 1 - e^-x and h / (1 + x
@@ -205,7 +243,10 @@ highp float vair_growth_rational(highp float x) {
     highp float first = 2.0 + u;
     return cubic * first * (2.0 + u * first);
 }
+#endif
 
+#ifndef VAIR_EXPREL_NEG_RATIONAL_67E65B60
+#define VAIR_EXPREL_NEG_RATIONAL_67E65B60
 // Mean of e^-u over 0 <= u <= x as a ratio of polynomials: 0.04 percent, and cheap. Variant of
 // vair_exprel_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -219,7 +260,10 @@ highp float vair_exprel_neg_rational(highp float x) {
     highp float h = vair_growth_rational(x);
     return h / (1.0 + x * h);
 }
+#endif
 
+#ifndef VAIR_GROWTH_COARSE_2E9DE95D
+#define VAIR_GROWTH_COARSE_2E9DE95D
 // Polynomial h for which x h(x) imitates e^x - 1, to one percent.
 //   x        at least 0; in [0, 1e30]
 //   returns  h(x), with 1 / (1 + x h) = e^-x to 7e-3, x h / (1 + x h) = 1 - e^-x and h / (1 + x h)
@@ -230,7 +274,10 @@ highp float vair_growth_coarse(highp float x) {
     highp float y = min(x, 88.0);
     return 1.0 + y * (0.3910993 + y * 0.37012953);
 }
+#endif
 
+#ifndef VAIR_EXPREL_NEG_RATIONAL_COARSE_01D1E7F3
+#define VAIR_EXPREL_NEG_RATIONAL_COARSE_01D1E7F3
 // Mean of e^-u over 0 <= u <= x as a ratio of polynomials of low degree: one percent. Variant of
 // vair_exprel_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -244,7 +291,10 @@ highp float vair_exprel_neg_rational_coarse(highp float x) {
     highp float h = vair_growth_coarse(x);
     return h / (1.0 + x * h);
 }
+#endif
 
+#ifndef VAIR_ATANH_SERIES_C629EC77
+#define VAIR_ATANH_SERIES_C629EC77
 // Inverse hyperbolic tangent of z, divided by z.
 //   z_squared  z * z, for |z| <= 1/3; in [0, 0.111111112]
 //   returns    atanh(z) / z, in [1, 1.0398]
@@ -255,7 +305,10 @@ highp float vair_atanh_series(highp float z_squared) {
     return 1.0 + z_squared * (0.3333321 + z_squared
         * (0.20010719 + z_squared * (0.14001513 + z_squared * 0.1400339)));
 }
+#endif
 
+#ifndef VAIR_LOG_ONE_MINUS_94E58979
+#define VAIR_LOG_ONE_MINUS_94E58979
 // Natural logarithm of 1 - q, accurate as q -> 0.
 //   q           in [0, 1); the largest float32 below 1 gives -16.64
 //   returns     log(1 - q), at most 0, with flat relative error
@@ -272,7 +325,10 @@ highp float vair_log_one_minus(highp float q) {
     highp float log_far = log(max(1.0 - q, 1.2e-38));
     return q < 0.5 ? log_near : log_far;
 }
+#endif
 
+#ifndef VAIR_LOG_ONE_MINUS_DIRECT_1066C956
+#define VAIR_LOG_ONE_MINUS_DIRECT_1066C956
 // Natural logarithm of 1 - q as written: a small absolute error, no relative accuracy as q -> 0.
 // Variant of vair_log_one_minus.
 //   q           in [0, 1)
@@ -287,7 +343,10 @@ highp float vair_log_one_minus(highp float q) {
 highp float vair_log_one_minus_direct(highp float q) {
     return log(max(1.0 - q, 1.2e-38));
 }
+#endif
 
+#ifndef VAIR_LOG_ONE_MINUS_THIN_B4C84E10
+#define VAIR_LOG_ONE_MINUS_THIN_B4C84E10
 // Natural logarithm of 1 - q for q up to 1/2 by two terms: no logarithm, 0.05 percent. Variant of
 // vair_log_one_minus.
 //   q           in [0, 0.5]
@@ -301,7 +360,10 @@ highp float vair_log_one_minus_thin(highp float q) {
     highp float z = q / (2.0 - q);
     return -2.0 * z * (1.0 + 0.35312897 * (z * z));
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_4B9A2C78
+#define VAIR_ONE_MINUS_EXP_NEG_4B9A2C78
 // Opacity 1 - e^-x of the optical depth x, with flat relative error down to x = 1e-30.
 //   x           optical depth, at least 0; in [0, 1e30]
 //   returns     1 - e^-x, in [0, 1]
@@ -317,7 +379,10 @@ highp float vair_one_minus_exp_neg(highp float x) {
     highp float difference = 1.0 - exp(-min(x, 80.0));
     return x < 0.7 ? series : difference;
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_DIRECT_A6D0B0EC
+#define VAIR_ONE_MINUS_EXP_NEG_DIRECT_A6D0B0EC
 // Opacity 1 - e^-x as written: a small absolute error, no relative accuracy for thin coats. Variant
 // of vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -329,7 +394,10 @@ highp float vair_one_minus_exp_neg(highp float x) {
 highp float vair_one_minus_exp_neg_direct(highp float x) {
     return 1.0 - exp(-min(x, 80.0));
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_DOUBLING_E8E93563
+#define VAIR_ONE_MINUS_EXP_NEG_DOUBLING_E8E93563
 // Opacity 1 - e^-x without a transcendental function or a branch, with flat relative error. Variant
 // of vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -349,7 +417,10 @@ highp float vair_one_minus_exp_neg_doubling(highp float x) {
     highp float e8 = e4 * (2.0 - e4);
     return e8 * (2.0 - e8);
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_RATIONAL_E2F98A53
+#define VAIR_ONE_MINUS_EXP_NEG_RATIONAL_E2F98A53
 // Opacity 1 - e^-x as a ratio of polynomials: a fifth of half an 8-bit step, and cheap. Variant of
 // vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -364,7 +435,10 @@ highp float vair_one_minus_exp_neg_rational(highp float x) {
     highp float w = x * vair_growth_rational(x);
     return w / (1.0 + w);
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_DOUBLING_SHORT_775F5336
+#define VAIR_ONE_MINUS_EXP_NEG_DOUBLING_SHORT_775F5336
 // Opacity 1 - e^-x by four doublings of a quadratic: no exponential, no division, no branch.
 // Variant of vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -382,7 +456,10 @@ highp float vair_one_minus_exp_neg_doubling_short(highp float x) {
     highp float e8 = e4 * (2.0 - e4);
     return e8 * (2.0 - e8);
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_RATIONAL_COARSE_79A192A2
+#define VAIR_ONE_MINUS_EXP_NEG_RATIONAL_COARSE_79A192A2
 // Opacity 1 - e^-x as a ratio of polynomials of low degree: one percent. Variant of
 // vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -396,7 +473,10 @@ highp float vair_one_minus_exp_neg_rational_coarse(highp float x) {
     highp float w = x * vair_growth_coarse(x);
     return w / (1.0 + w);
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_206604D0
+#define VAIR_POW_ONE_MINUS_206604D0
 // Power (1 - q)^p, accurate as q -> 0 and for exponents up to 1e5.
 //   q           defect 1 - x of the base x, in [0, 2]; computed directly, not as 1 - x
 //   p           exponent, in [0, 1e5]
@@ -413,7 +493,10 @@ highp float vair_pow_one_minus(highp float q, highp float p) {
     highp float power = exp(max(p * vair_log_one_minus(inside), -80.0));
     return (q < 1.0 || p <= 0.0) ? power : 0.0;
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_FROM4_02298721
+#define VAIR_POW_ONE_MINUS_FROM4_02298721
 // Power (1 - q)^p for exponents from 4 on, without a logarithm. Variant of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
 //   p           exponent, in [4, 1e5]
@@ -433,7 +516,10 @@ highp float vair_pow_one_minus_from4(highp float q, highp float p) {
     highp float series = 1.0 + z_squared * (0.32551703 + z_squared * 0.29121366);
     return exp(max(-2.0 * p * z * series, -80.0));
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_GAUSS_EA2E453D
+#define VAIR_POW_ONE_MINUS_GAUSS_EA2E453D
 // Power (1 - q)^p by its first term: a third of a percent off at p = 8 and exact for large p.
 // Variant of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -450,7 +536,10 @@ highp float vair_pow_one_minus_gauss(highp float q, highp float p) {
     highp float inside = min(q, 1.9);
     return exp(max(-2.0 * p * (inside / (2.0 - inside)), -80.0));
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_SQ16_5DEAA744
+#define VAIR_POW_ONE_MINUS_SQ16_5DEAA744
 // Power (1 - q)^p by four squarings and one division, without a transcendental function. Variant of
 // vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -472,7 +561,10 @@ highp float vair_pow_one_minus_sq16(highp float q, highp float p) {
     highp float r8 = r4 * r4;
     return r8 * r8;
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_FROM8_075A8EEF
+#define VAIR_POW_ONE_MINUS_FROM8_075A8EEF
 // Power (1 - q)^p for exponents from 8 on, by one exponential and without a division. Variant of
 // vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -487,7 +579,10 @@ highp float vair_pow_one_minus_from8(highp float q, highp float p) {
     highp float inside = clamp(q, 0.0, 2.0);
     return exp(-min(p * inside * (1.0 + inside * (0.47710302 + inside * 0.5246705)), 80.0));
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_CUBIC8_77F390CB
+#define VAIR_POW_ONE_MINUS_CUBIC8_77F390CB
 // Power (1 - q)^p by three squarings of a cubic: no transcendental function, no division. Variant
 // of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -506,7 +601,10 @@ highp float vair_pow_one_minus_cubic8(highp float q, highp float p) {
     highp float r4 = r2 * r2;
     return r4 * r4;
 }
+#endif
 
+#ifndef VAIR_SAFE_NORMALIZE_C93E1CCB
+#define VAIR_SAFE_NORMALIZE_C93E1CCB
 // Unit vector along x for any length from 1e-30 to 1e30, and a chosen direction for the zero
 // vector.
 //   x           vector to normalise; length in [1e-30, 1e30]
@@ -526,7 +624,10 @@ highp vec3 vair_safe_normalize(highp vec3 x, highp vec3 fallback) {
     highp vec3 unit = inversesqrt(max(squared, 1e-37)) * scaled;
     return squared > 1e-37 ? unit : fallback;
 }
+#endif
 
+#ifndef VAIR_SAFE_NORMALIZE_DOT_7753C893
+#define VAIR_SAFE_NORMALIZE_DOT_7753C893
 // Unit vector along x for ordinary lengths, and a chosen direction for the zero vector. Variant of
 // vair_safe_normalize.
 //   x           vector to normalise, of length 1e-15 to 1e18, or zero
@@ -543,7 +644,10 @@ highp vec3 vair_safe_normalize_dot(highp vec3 x, highp vec3 fallback) {
     highp vec3 unit = inversesqrt(max(squared, 1e-37)) * x;
     return squared > 1e-37 ? unit : fallback;
 }
+#endif
 
+#ifndef VAIR_SAFE_NORMALIZE_NONZERO_6604DC37
+#define VAIR_SAFE_NORMALIZE_NONZERO_6604DC37
 // Unit vector along x for ordinary lengths, where x is known not to be zero. Variant of
 // vair_safe_normalize.
 //   x           vector to normalise, of length 1e-15 to 1e18
@@ -557,7 +661,10 @@ highp vec3 vair_safe_normalize_dot(highp vec3 x, highp vec3 fallback) {
 highp vec3 vair_safe_normalize_nonzero(highp vec3 x, highp vec3 fallback) {
     return inversesqrt(max(dot(x, x), 1e-37)) * x;
 }
+#endif
 
+#ifndef VAIR_SAFE_POW_11B8F37D
+#define VAIR_SAFE_POW_11B8F37D
 // Power x^y that is 0 for negative bases and 1 for exponent 0.
 //   x           base; in [-1, 16]
 //   y           exponent; in [-28, 100000]
@@ -584,7 +691,10 @@ highp float vair_safe_pow(highp float x, highp float y) {
     highp float bounded = x > 0.0 ? positive : 0.0;
     return y == 0.0 ? 1.0 : bounded;
 }
+#endif
 
+#ifndef VAIR_SAFE_POW_EXP2_B62BD969
+#define VAIR_SAFE_POW_EXP2_B62BD969
 // Power x^y by the built-in logarithm: cheaper, with an error that grows with the exponent. Variant
 // of vair_safe_pow.
 //   x           base; in [-1, 16]
@@ -606,7 +716,10 @@ highp float vair_safe_pow_exp2(highp float x, highp float y) {
     highp float bounded = x > 0.0 ? positive : 0.0;
     return y == 0.0 ? 1.0 : bounded;
 }
+#endif
 
+#ifndef VAIR_SAFE_POW_NEAR_ONE_D145BB07
+#define VAIR_SAFE_POW_NEAR_ONE_D145BB07
 // Power x^y for bases from 1/2 to 2: as accurate as vair_safe_pow, without a logarithm. Variant of
 // vair_safe_pow.
 //   x           base, in [0.5, 2]
@@ -623,7 +736,10 @@ highp float vair_safe_pow_near_one(highp float x, highp float y) {
     highp float z = (x - 1.0) / (x + 1.0);
     return exp(clamp(2.0 * y * z * vair_atanh_series(z * z), -80.0, 80.0));
 }
+#endif
 
+#ifndef VAIR_SAFE_SMOOTHSTEP_AF44CC44
+#define VAIR_SAFE_SMOOTHSTEP_AF44CC44
 // Smooth step from 0 at edge0 to 1 at edge1, in either order.
 //   edge0       where the result is 0; in [-10000, 10000]
 //   edge1       where the result is 1; may lie below edge0, then the step descends; in [-10000,
@@ -646,7 +762,10 @@ highp float vair_safe_smoothstep(highp float edge0, highp float edge1, highp flo
     highp float hard = x < edge0 ? 0.0 : 1.0;
     return abs(width) >= 1.2e-38 ? s * s * (3.0 - 2.0 * s) : hard;
 }
+#endif
 
+#ifndef VAIR_SAFE_SMOOTHSTEP_RISING_9CE50845
+#define VAIR_SAFE_SMOOTHSTEP_RISING_9CE50845
 // Smooth step from 0 at edge0 to 1 at edge1, for edge0 < edge1. Variant of vair_safe_smoothstep.
 //   edge0       where the result is 0; in [-10000, 10000]
 //   edge1       where the result is 1; above edge0; in [-10000, 10000]
@@ -661,7 +780,10 @@ highp float vair_safe_smoothstep_rising(highp float edge0, highp float edge1, hi
     highp float s = clamp((x - edge0) / max(edge1 - edge0, 1e-30), 0.0, 1.0);
     return s * s * (3.0 - 2.0 * s);
 }
+#endif
 
+#ifndef VAIR_SAFE_SMOOTHSTEP_RAMP_03A048B6
+#define VAIR_SAFE_SMOOTHSTEP_RAMP_03A048B6
 // Straight step in place of the smooth one, for edge0 < edge1: 0.031 off, with corners. Variant of
 // vair_safe_smoothstep.
 //   edge0       lower edge; in [-10000, 10000]
@@ -678,7 +800,10 @@ highp float vair_safe_smoothstep_ramp(highp float edge0, highp float edge1, high
     highp float s = (x - edge0) / max(edge1 - edge0, 1e-30);
     return clamp(-0.13309973 + 1.2661995 * s, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_SAFE_SQRT_AEFE6BB2
+#define VAIR_SAFE_SQRT_AEFE6BB2
 // Square root of x, and 0 for negative x.
 //   x           number; what rounding pushed below zero counts as zero; in [-1, 1e30]
 //   returns     sqrt(max(x, 0)), at least 0
@@ -691,7 +816,10 @@ highp float vair_safe_smoothstep_ramp(highp float edge0, highp float edge1, high
 highp float vair_safe_sqrt(highp float x) {
     return sqrt(max(x, 0.0));
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_NORMAL_ACD43457
+#define VAIR_FRAME_FROM_NORMAL_ACD43457
 // Right-handed frame around n, by a fixed rule that is continuous on each of the halves z >= 0 and
 // z < 0.
 //   n           normal; unit vector
@@ -710,7 +838,10 @@ vair_Frame vair_frame_from_normal(highp vec3 n) {
     highp vec3 bitangent = vec3(b, s + n.y * n.y * a, -n.y);
     return vair_Frame(tangent, bitangent, n);
 }
+#endif
 
+#ifndef VAIR_DOUBLED_CROSS_AAD49E9E
+#define VAIR_DOUBLED_CROSS_AAD49E9E
 // Twice the outer product of two directions, with flat relative error at every angle.
 //   a        first direction; unit vector
 //   b        second direction; unit vector
@@ -726,7 +857,10 @@ highp vec3 vair_doubled_cross(highp vec3 a, highp vec3 b) {
     highp vec3 s = a + b;
     return vec3(d.y * s.z - d.z * s.y, d.z * s.x - d.x * s.z, d.x * s.y - d.y * s.x);
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_TANGENT_B7631F21
+#define VAIR_FRAME_FROM_TANGENT_B7631F21
 // Right-handed frame with the normal n and, as far as that allows, the tangent t.
 //   n           normal, kept as it is; unit vector
 //   t           wanted tangent; only its part across n counts; unit vector
@@ -743,7 +877,10 @@ vair_Frame vair_frame_from_tangent(highp vec3 n, highp vec3 t) {
         vair_frame_from_normal(n).bitangent);
     return vair_Frame(cross(bitangent, n), bitangent, n);
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_TANGENT_APART_CED53AED
+#define VAIR_FRAME_FROM_TANGENT_APART_CED53AED
 // Right-handed frame with the normal n and the tangent t, for tangents that are well off the
 // normal. Variant of vair_frame_from_tangent.
 //   n           normal, kept as it is; unit vector
@@ -762,7 +899,10 @@ vair_Frame vair_frame_from_tangent_apart(highp vec3 n, highp vec3 t) {
     highp vec3 bitangent = inversesqrt(max(dot(across, across), 1e-37)) * across;
     return vair_Frame(cross(bitangent, n), bitangent, n);
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_TANGENT_ORTHOGONAL_206D0082
+#define VAIR_FRAME_FROM_TANGENT_ORTHOGONAL_206D0082
 // Right-handed frame of a normal and a tangent that are orthogonal already. Variant of
 // vair_frame_from_tangent.
 //   n           normal, kept as it is; unit vector
@@ -777,7 +917,10 @@ vair_Frame vair_frame_from_tangent_apart(highp vec3 n, highp vec3 t) {
 vair_Frame vair_frame_from_tangent_orthogonal(highp vec3 n, highp vec3 t) {
     return vair_Frame(t, cross(n, t), n);
 }
+#endif
 
+#ifndef VAIR_HALF_VECTOR_CD473AD3
+#define VAIR_HALF_VECTOR_CD473AD3
 // Unit vector halfway between l and v.
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
@@ -797,7 +940,10 @@ highp vec3 vair_half_vector(highp vec3 l, highp vec3 v) {
     highp vec3 middle = inversesqrt(max(squared, 1e-12)) * total;
     return squared < 1e-12 ? vair_frame_from_normal(l).tangent : middle;
 }
+#endif
 
+#ifndef VAIR_HALF_VECTOR_APART_038E2C12
+#define VAIR_HALF_VECTOR_APART_038E2C12
 // Unit vector halfway between l and v, where they are not opposite. Variant of vair_half_vector.
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
@@ -813,7 +959,10 @@ highp vec3 vair_half_vector_apart(highp vec3 l, highp vec3 v) {
     highp vec3 total = l + v;
     return inversesqrt(max(dot(total, total), 1e-12)) * total;
 }
+#endif
 
+#ifndef VAIR_HALF_VECTOR_ACUTE_457B9142
+#define VAIR_HALF_VECTOR_ACUTE_457B9142
 // Unit vector halfway between l and v that are at most a right angle apart, to 5e-4, without a
 // root. Variant of vair_half_vector.
 //   l           direction to the light; unit vector
@@ -828,7 +977,10 @@ highp vec3 vair_half_vector_acute(highp vec3 l, highp vec3 v) {
     highp float c = clamp(dot(l, v), 0.0, 1.0);
     return (0.7067681 + c * (-0.34165564 + c * (0.19444013 + c * (-0.059792068)))) * (l + v);
 }
+#endif
 
+#ifndef VAIR_LINE_COMPONENT_440FC908
+#define VAIR_LINE_COMPONENT_440FC908
 // Part of x along the line of t.
 //   x           vector; rounding is proportional to its length; length in [0.001, 1]
 //   t           unit vector along the line, either way
@@ -840,7 +992,10 @@ highp vec3 vair_half_vector_acute(highp vec3 l, highp vec3 v) {
 highp vec3 vair_line_component(highp vec3 x, highp vec3 t) {
     return dot(x, t) * t;
 }
+#endif
 
+#ifndef VAIR_LINE_REJECTION_08548686
+#define VAIR_LINE_REJECTION_08548686
 // Part of x across the line of t.
 //   x           vector; rounding is proportional to its length; length in [0.001, 1]
 //   t           unit vector along the line, either way
@@ -854,7 +1009,10 @@ highp vec3 vair_line_component(highp vec3 x, highp vec3 t) {
 highp vec3 vair_line_rejection(highp vec3 x, highp vec3 t) {
     return x - dot(x, t) * t;
 }
+#endif
 
+#ifndef VAIR_MIRROR_78949361
+#define VAIR_MIRROR_78949361
 // Reflection of l about n; both point away from the surface, and so does the result.
 //   l           direction to the light; unit vector
 //   n           normal; unit vector
@@ -867,7 +1025,10 @@ highp vec3 vair_line_rejection(highp vec3 x, highp vec3 t) {
 highp vec3 vair_mirror(highp vec3 l, highp vec3 n) {
     return 2.0 * dot(n, l) * n - l;
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_7E2C7345
+#define VAIR_SIN_ANGLE_7E2C7345
 // Sine of the angle between two directions, with flat relative error at every angle.
 //   a           first direction; unit vector
 //   b           second direction; unit vector
@@ -884,7 +1045,10 @@ highp float vair_sin_angle(highp vec3 a, highp vec3 b) {
     highp vec3 doubled = vair_doubled_cross(a, b);
     return 0.5 * sqrt(dot(doubled, doubled));
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_HALF_53692B6E
+#define VAIR_SIN_ANGLE_HALF_53692B6E
 // Sine of the angle between two directions by half angles: one root, good to 1e-4 rad. Variant of
 // vair_sin_angle.
 //   a           first direction; unit vector
@@ -904,7 +1068,10 @@ highp float vair_sin_angle_half(highp vec3 a, highp vec3 b) {
     highp vec3 total = a + b;
     return 0.5 * sqrt(dot(difference, difference) * dot(total, total));
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_CROSS_CBEE6202
+#define VAIR_SIN_ANGLE_CROSS_CBEE6202
 // Sine of the angle between two directions by their cross product. Variant of vair_sin_angle.
 //   a           first direction; unit vector
 //   b           second direction; unit vector
@@ -920,7 +1087,10 @@ highp float vair_sin_angle_cross(highp vec3 a, highp vec3 b) {
     highp vec3 product = cross(a, b);
     return sqrt(dot(product, product));
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_COSINE_E7FE9A3C
+#define VAIR_SIN_ANGLE_COSINE_E7FE9A3C
 // Sine of the angle between two directions by their cosine: the obvious form. Variant of
 // vair_sin_angle.
 //   a           first direction; unit vector
@@ -938,7 +1108,10 @@ highp float vair_sin_angle_cosine(highp vec3 a, highp vec3 b) {
     highp float c = dot(a, b);
     return sqrt(max(1.0 - c * c, 0.0));
 }
+#endif
 
+#ifndef VAIR_TO_LOCAL_221664FE
+#define VAIR_TO_LOCAL_221664FE
 // Coordinates of a world-space vector in a frame.
 //   frame       orthonormal frame in world space
 //   w           vector in world space; unit vector
@@ -950,7 +1123,10 @@ highp float vair_sin_angle_cosine(highp vec3 a, highp vec3 b) {
 highp vec3 vair_to_local(vair_Frame frame, highp vec3 w) {
     return vec3(dot(frame.tangent, w), dot(frame.bitangent, w), dot(frame.normal, w));
 }
+#endif
 
+#ifndef VAIR_TO_WORLD_3A094342
+#define VAIR_TO_WORLD_3A094342
 // World-space vector of coordinates in a frame; undoes vair_to_local.
 //   frame       orthonormal frame in world space
 //   w           vector in the frame: x along its tangent, y bitangent, z normal; unit vector
@@ -962,7 +1138,10 @@ highp vec3 vair_to_local(vair_Frame frame, highp vec3 w) {
 highp vec3 vair_to_world(vair_Frame frame, highp vec3 w) {
     return w.x * frame.tangent + w.y * frame.bitangent + w.z * frame.normal;
 }
+#endif
 
+#ifndef VAIR_INHERITED_SHADOW_778A0306
+#define VAIR_INHERITED_SHADOW_778A0306
 // Lambert's cosine of the carrying surface, which the strands inherit as self-shadowing.
 //   n           surface normal; unit vector
 //   l           direction to the light; unit vector
@@ -975,7 +1154,10 @@ highp vec3 vair_to_world(vair_Frame frame, highp vec3 w) {
 highp float vair_inherited_shadow(highp vec3 n, highp vec3 l) {
     return max(dot(n, l), 0.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_ANGLES_E95E816F
+#define VAIR_STRAND_ANGLES_E95E816F
 // Angles of a light and a viewer to a strand, computed once for diffuse and specular terms.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1000,7 +1182,10 @@ vair_StrandAngles vair_strand_angles(highp vec3 t, highp vec3 l, highp vec3 v) {
     highp float along = cos_l + cos_v;
     return vair_StrandAngles(cos_l, cos_v, sin_l, sin_v, 0.5 * (across * across + along * along));
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_DF89D75C
+#define VAIR_KAJIYA_KAY_SHADE_DF89D75C
 // Light reflected by a free strand, after Kajiya and Kay.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1022,7 +1207,10 @@ highp vec3 vair_kajiya_kay_shade(highp vec3 t, highp vec3 l, highp vec3 v, highp
     vair_StrandAngles angles = vair_strand_angles(t, l, v);
     return angles.sin_l * k_diffuse + vair_pow_one_minus(angles.defect, exponent) * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_2575651C
+#define VAIR_BANKS_SHADE_2575651C
 // Light reflected by a surface that is made of strands, after Banks.
 //   t           strand tangent, root to tip; unit vector
 //   n           surface normal; unit vector
@@ -1045,7 +1233,10 @@ highp vec3 vair_banks_shade(highp vec3 t, highp vec3 n, highp vec3 l, highp vec3
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_ANGLES_HALF_7A341A93
+#define VAIR_STRAND_ANGLES_HALF_7A341A93
 // Angles of a light and a viewer to a strand by half angles: everything from four squared lengths.
 // Variant of vair_strand_angles.
 //   t           strand tangent, root to tip; unit vector
@@ -1079,7 +1270,10 @@ vair_StrandAngles vair_strand_angles_half(highp vec3 t, highp vec3 l, highp vec3
     highp float along = cos_l + cos_v;
     return vair_StrandAngles(cos_l, cos_v, sin_l, sin_v, 0.5 * (across * across + along * along));
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_FROM4_7E55141F
+#define VAIR_KAJIYA_KAY_SHADE_FROM4_7E55141F
 // Light reflected by a free strand, for exponents from 4 on, without a logarithm. Variant of
 // vair_kajiya_kay_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1100,7 +1294,10 @@ highp vec3 vair_kajiya_kay_shade_from4(highp vec3 t, highp vec3 l, highp vec3 v,
     return angles.sin_l * k_diffuse + vair_pow_one_minus_from4(angles.defect, exponent)
         * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_FROM4_8990CD6B
+#define VAIR_BANKS_SHADE_FROM4_8990CD6B
 // Light reflected by a surface that is made of strands, for exponents from 4 on, without a
 // logarithm. Variant of vair_banks_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1122,7 +1319,10 @@ highp vec3 vair_banks_shade_from4(highp vec3 t, highp vec3 n, highp vec3 l, high
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade_from4(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_FROM8_433178C1
+#define VAIR_KAJIYA_KAY_SHADE_FROM8_433178C1
 // Light reflected by a free strand, for exponents from 8 on, by one exponential. Variant of
 // vair_kajiya_kay_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1143,7 +1343,10 @@ highp vec3 vair_kajiya_kay_shade_from8(highp vec3 t, highp vec3 l, highp vec3 v,
     return angles.sin_l * k_diffuse + vair_pow_one_minus_from8(angles.defect, exponent)
         * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_FROM8_AD0AA43A
+#define VAIR_BANKS_SHADE_FROM8_AD0AA43A
 // Light reflected by a surface that is made of strands, for exponents from 8 on, by one
 // exponential. Variant of vair_banks_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1165,7 +1368,10 @@ highp vec3 vair_banks_shade_from8(highp vec3 t, highp vec3 n, highp vec3 l, high
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade_from8(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_CUBIC8_5CFC48CE
+#define VAIR_KAJIYA_KAY_SHADE_CUBIC8_5CFC48CE
 // Light reflected by a free strand, for exponents from 8 on, by polynomials. Variant of
 // vair_kajiya_kay_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1186,7 +1392,10 @@ highp vec3 vair_kajiya_kay_shade_cubic8(highp vec3 t, highp vec3 l, highp vec3 v
     return angles.sin_l * k_diffuse + vair_pow_one_minus_cubic8(angles.defect, exponent)
         * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_CUBIC8_C4B75662
+#define VAIR_BANKS_SHADE_CUBIC8_C4B75662
 // Light reflected by a surface that is made of strands, for exponents from 8 on, by polynomials.
 // Variant of vair_banks_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1208,7 +1417,10 @@ highp vec3 vair_banks_shade_cubic8(highp vec3 t, highp vec3 n, highp vec3 l, hig
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade_cubic8(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_TANGENT_FROM_MAP_3576963F
+#define VAIR_TANGENT_FROM_MAP_3576963F
 // Per-pixel strand tangent of a brushed surface.
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
@@ -1230,7 +1442,10 @@ highp vec3 vair_tangent_from_map(highp vec3 n, highp vec3 t, highp vec3 map_tang
     highp vec2 unit = squared > 1e-37 ? inversesqrt(max(squared, 1e-37)) * texel : vec2(1.0, 0.0);
     return unit.x * frame.tangent + unit.y * frame.bitangent;
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_430B0196
+#define VAIR_BRUSHED_SHADE_430B0196
 // Light reflected by a brushed surface: strand lighting with a tangent from a texture, per pixel.
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
@@ -1257,7 +1472,10 @@ highp vec3 vair_brushed_shade(highp vec3 n, highp vec3 t, highp vec3 map_tangent
     highp vec3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_FROM4_73811C11
+#define VAIR_BRUSHED_SHADE_FROM4_73811C11
 // Light reflected by a brushed surface, for exponents from 4 on, without a logarithm. Variant of
 // vair_brushed_shade.
 //   n            surface normal; unit vector
@@ -1280,7 +1498,10 @@ highp vec3 vair_brushed_shade_from4(highp vec3 n, highp vec3 t, highp vec3 map_t
     highp vec3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade_from4(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_FROM8_9CF1F0CE
+#define VAIR_BRUSHED_SHADE_FROM8_9CF1F0CE
 // Light reflected by a brushed surface, for exponents from 8 on, by one exponential. Variant of
 // vair_brushed_shade.
 //   n            surface normal; unit vector
@@ -1303,7 +1524,10 @@ highp vec3 vair_brushed_shade_from8(highp vec3 n, highp vec3 t, highp vec3 map_t
     highp vec3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade_from8(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_CUBIC8_AA5B6513
+#define VAIR_BRUSHED_SHADE_CUBIC8_AA5B6513
 // Light reflected by a brushed surface, for exponents from 8 on, by polynomials. Variant of
 // vair_brushed_shade.
 //   n            surface normal; unit vector
@@ -1326,7 +1550,10 @@ highp vec3 vair_brushed_shade_cubic8(highp vec3 n, highp vec3 t, highp vec3 map_
     highp vec3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade_cubic8(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_COAT_EXTINCTION_C291D3DA
+#define VAIR_COAT_EXTINCTION_C291D3DA
 // Extinction coefficient of a coat that absorbs the fraction rho per unit length.
 //   rho         fraction of light lost along a path of length 1, in [0, 1]; Banks uses 0.02
 //   returns     -log(1 - rho) per unit length, at least 0
@@ -1341,7 +1568,10 @@ highp float vair_coat_extinction(highp float rho) {
     highp float inside = -vair_log_one_minus(min(rho, 0.99999994));
     return rho < 1.0 ? inside : 1e18;
 }
+#endif
 
+#ifndef VAIR_COAT_EXTINCTION_DIRECT_F8FD742B
+#define VAIR_COAT_EXTINCTION_DIRECT_F8FD742B
 // Extinction coefficient of a coat, as written: a small absolute error. Variant of
 // vair_coat_extinction.
 //   rho         fraction of light lost along a path of length 1, in [0, 1]
@@ -1357,7 +1587,10 @@ highp float vair_coat_extinction_direct(highp float rho) {
     highp float inside = -log(max(1.0 - rho, 1.2e-38));
     return rho < 1.0 ? inside : 1e18;
 }
+#endif
 
+#ifndef VAIR_COAT_EXTINCTION_THIN_9896C27E
+#define VAIR_COAT_EXTINCTION_THIN_9896C27E
 // Extinction coefficient of a coat that loses at most half the light per unit length, to 0.05
 // percent. Variant of vair_coat_extinction.
 //   rho         fraction of light lost along a path of length 1, in [0, 0.5]
@@ -1369,7 +1602,10 @@ highp float vair_coat_extinction_direct(highp float rho) {
 highp float vair_coat_extinction_thin(highp float rho) {
     return -vair_log_one_minus_thin(rho);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_BANKS_72B62D6E
+#define VAIR_COAT_PATH_BANKS_72B62D6E
 // Way of light through a coat of strands that lie along the surface, as the lecture writes it.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
 //               1000000]
@@ -1386,7 +1622,10 @@ highp float vair_coat_extinction_thin(highp float rho) {
 highp float vair_coat_path_banks(highp float depth, highp vec3 t, highp vec3 l) {
     return min(depth / max(vair_sin_angle(t, l), 1e-30), 1e18);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_SLAB_0B222638
+#define VAIR_COAT_PATH_SLAB_0B222638
 // Way of light through a coat that is a flat layer over the surface.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
 //               1000000]
@@ -1405,7 +1644,10 @@ highp float vair_coat_path_banks(highp float depth, highp vec3 t, highp vec3 l) 
 highp float vair_coat_path_slab(highp float depth, highp vec3 n, highp vec3 l) {
     return min(depth / max(dot(n, l), 1e-30), 1e18);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_BANKS_HALF_76D13504
+#define VAIR_COAT_PATH_BANKS_HALF_76D13504
 // Way of light through a coat of strands that lie along the surface, for light off the strand's
 // axis. Variant of vair_coat_path_banks.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
@@ -1422,7 +1664,10 @@ highp float vair_coat_path_slab(highp float depth, highp vec3 n, highp vec3 l) {
 highp float vair_coat_path_banks_half(highp float depth, highp vec3 t, highp vec3 l) {
     return min(depth / max(vair_sin_angle_half(t, l), 1e-30), 1e18);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_BANKS_CROSS_B08F62AA
+#define VAIR_COAT_PATH_BANKS_CROSS_B08F62AA
 // Way of light through a coat of strands that lie along the surface, for light off the strand's
 // axis. Variant of vair_coat_path_banks.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
@@ -1439,7 +1684,10 @@ highp float vair_coat_path_banks_half(highp float depth, highp vec3 t, highp vec
 highp float vair_coat_path_banks_cross(highp float depth, highp vec3 t, highp vec3 l) {
     return min(depth / max(vair_sin_angle_cross(t, l), 1e-30), 1e18);
 }
+#endif
 
+#ifndef VAIR_COAT_TRANSMITTANCE_9561C6DB
+#define VAIR_COAT_TRANSMITTANCE_9561C6DB
 // Fraction of light that passes a coat: e^-(extinction path).
 //   extinction  extinction coefficient, per scene unit, in [0, 1e18]; see vair_coat_extinction
 //   path        length of the way, in scene units, in [0, 1e18]; see vair_coat_path_slab
@@ -1453,7 +1701,10 @@ highp float vair_coat_path_banks_cross(highp float depth, highp vec3 t, highp ve
 highp float vair_coat_transmittance(highp float extinction, highp float path) {
     return exp(-min(extinction * path, 80.0));
 }
+#endif
 
+#ifndef VAIR_COAT_TRANSMITTANCE_CUBIC16_0C2DDAE5
+#define VAIR_COAT_TRANSMITTANCE_CUBIC16_0C2DDAE5
 // Fraction of light that passes a coat, as the sixteenth power of a cubic: 7e-6, without
 // exponential. Variant of vair_coat_transmittance.
 //   extinction  extinction coefficient, per scene unit, in [0, 1e18]
@@ -1472,7 +1723,10 @@ highp float vair_coat_transmittance_cubic16(highp float extinction, highp float 
     highp float r8 = r4 * r4;
     return r8 * r8;
 }
+#endif
 
+#ifndef VAIR_EXP_NEG_QUADRATIC16_37D003F3
+#define VAIR_EXP_NEG_QUADRATIC16_37D003F3
 // e^-x as the sixteenth power of a quadratic.
 //   x        at least 0; in [0, 1e30]
 //   returns  e^-x to 2.3e-4 absolute, in (0, 1]
@@ -1486,7 +1740,10 @@ highp float vair_exp_neg_quadratic16(highp float x) {
     highp float r8 = r4 * r4;
     return r8 * r8;
 }
+#endif
 
+#ifndef VAIR_COAT_TRANSMITTANCE_QUADRATIC16_DB6CA1D2
+#define VAIR_COAT_TRANSMITTANCE_QUADRATIC16_DB6CA1D2
 // Fraction of light that passes a coat, as the sixteenth power of a quadratic: 2.3e-4. Variant of
 // vair_coat_transmittance.
 //   extinction  extinction coefficient, per scene unit, in [0, 1e18]
@@ -1501,7 +1758,10 @@ highp float vair_exp_neg_quadratic16(highp float x) {
 highp float vair_coat_transmittance_quadratic16(highp float extinction, highp float path) {
     return vair_exp_neg_quadratic16(extinction * path);
 }
+#endif
 
+#ifndef VAIR_TANGENT_SHIFT_8DF6D39D
+#define VAIR_TANGENT_SHIFT_8DF6D39D
 // Strand tangent tilted toward the surface normal.
 //   t           strand tangent, root to tip; unit vector
 //   n           surface normal; unit vector
@@ -1520,7 +1780,10 @@ highp float vair_coat_transmittance_quadratic16(highp float extinction, highp fl
 highp vec3 vair_tangent_shift(highp vec3 t, highp vec3 n, highp float shift) {
     return vair_safe_normalize_dot(t + shift * n, t);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_797B19F4
+#define VAIR_STRAND_SPECULAR_HALF_797B19F4
 // Specular lobe of a strand after Scheuermann: sin(t, h)^exponent.
 //   t           strand tangent, root to tip; unit vector
 //   h           vair_half_vector of light and viewer; unit vector
@@ -1541,7 +1804,10 @@ highp float vair_strand_specular_half(highp vec3 t, highp vec3 h, highp float ex
     highp float c = dot(t, h);
     return vair_pow_one_minus(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_HIGHLIGHT_8A2224DB
+#define VAIR_SCHEUERMANN_HIGHLIGHT_8A2224DB
 // One highlight of vair_scheuermann_shade.
 //   t         strand tangent, root to tip; unit vector
 //   n         surface normal; unit vector
@@ -1558,7 +1824,10 @@ highp float vair_scheuermann_highlight(highp vec3 t, highp vec3 n, highp vec3 h,
     highp float s = clamp(1.0 + dot(shifted, h), 0.0, 1.0);
     return s * s * (3.0 - 2.0 * s) * vair_strand_specular_half(shifted, h, exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_46805D8D
+#define VAIR_SCHEUERMANN_SHADE_46805D8D
 // Light reflected by hair with a soft diffuse term and two shifted highlights, after Scheuermann.
 //   t                   strand tangent, root to tip; unit vector
 //   n                   surface normal; unit vector
@@ -1597,7 +1866,10 @@ highp vec3 vair_scheuermann_shade(highp vec3 t, highp vec3 n, highp vec3 l, high
     highp float s2 = vair_scheuermann_highlight(t, n, h, secondary_exponent, secondary_shift);
     return base * (vec3(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_FADE_B53DA02B
+#define VAIR_SCHEUERMANN_FADE_B53DA02B
 // Factor by which vair_scheuermann_shade fades a highlight where h points back along the strand.
 //   t        strand tangent, shifted; unit vector
 //   h        vair_half_vector of light and viewer; unit vector
@@ -1608,7 +1880,10 @@ highp float vair_scheuermann_fade(highp vec3 t, highp vec3 h) {
     highp float s = clamp(1.0 + dot(t, h), 0.0, 1.0);
     return s * s * (3.0 - 2.0 * s);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_FROM4_33B8A2A0
+#define VAIR_STRAND_SPECULAR_HALF_FROM4_33B8A2A0
 // Half-vector lobe of a strand for exponents from 8 on, without a logarithm. Variant of
 // vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -1624,7 +1899,10 @@ highp float vair_strand_specular_half_from4(highp vec3 t, highp vec3 h, highp fl
     highp float c = dot(t, h);
     return vair_pow_one_minus_from4(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_FROM4_B33140A4
+#define VAIR_SCHEUERMANN_SHADE_FROM4_B33140A4
 // Light reflected by hair with two shifted highlights of exponents from 8 on, without logarithms.
 // Variant of vair_scheuermann_shade.
 //   t                   strand tangent, root to tip; unit vector
@@ -1661,7 +1939,10 @@ highp vec3 vair_scheuermann_shade_from4(highp vec3 t, highp vec3 n, highp vec3 l
         * vair_strand_specular_half_from4(t2, h, secondary_exponent);
     return base * (vec3(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_FROM8_6568BD02
+#define VAIR_STRAND_SPECULAR_HALF_FROM8_6568BD02
 // Half-vector lobe of a strand for exponents from 16 on, by one exponential and without a division.
 // Variant of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -1676,7 +1957,10 @@ highp float vair_strand_specular_half_from8(highp vec3 t, highp vec3 h, highp fl
     highp float c = dot(t, h);
     return vair_pow_one_minus_from8(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_FROM8_B44B0041
+#define VAIR_SCHEUERMANN_SHADE_FROM8_B44B0041
 // Light reflected by hair with two shifted highlights of exponents from 16 on, by two exponentials.
 // Variant of vair_scheuermann_shade.
 //   t                   strand tangent, root to tip; unit vector
@@ -1713,7 +1997,10 @@ highp vec3 vair_scheuermann_shade_from8(highp vec3 t, highp vec3 n, highp vec3 l
         * vair_strand_specular_half_from8(t2, h, secondary_exponent);
     return base * (vec3(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_CUBIC8_1DCC9B1D
+#define VAIR_STRAND_SPECULAR_HALF_CUBIC8_1DCC9B1D
 // Half-vector lobe of a strand for exponents from 16 on, without transcendental function or
 // division. Variant of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -1728,7 +2015,10 @@ highp float vair_strand_specular_half_cubic8(highp vec3 t, highp vec3 h, highp f
     highp float c = dot(t, h);
     return vair_pow_one_minus_cubic8(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_CUBIC8_8555EC9C
+#define VAIR_SCHEUERMANN_SHADE_CUBIC8_8555EC9C
 // Light reflected by hair with two shifted highlights of exponents from 16 on, by polynomials.
 // Variant of vair_scheuermann_shade.
 //   t                   strand tangent, root to tip; unit vector
@@ -1765,7 +2055,10 @@ highp vec3 vair_scheuermann_shade_cubic8(highp vec3 t, highp vec3 n, highp vec3 
         * vair_strand_specular_half_cubic8(t2, h, secondary_exponent);
     return base * (vec3(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_STRAND_ANGLES_COSINE_7FAC66A6
+#define VAIR_STRAND_ANGLES_COSINE_7FAC66A6
 // Angles of a light and a viewer to a strand from their cosines: for directions away from the
 // strand. Variant of vair_strand_angles.
 //   t           strand tangent, root to tip; unit vector
@@ -1789,7 +2082,10 @@ vair_StrandAngles vair_strand_angles_cosine(highp vec3 t, highp vec3 l, highp ve
     highp float along = cos_l + cos_v;
     return vair_StrandAngles(cos_l, cos_v, sin_l, sin_v, 0.5 * (across * across + along * along));
 }
+#endif
 
+#ifndef VAIR_STRAND_AZIMUTH_COSINE_4FF47447
+#define VAIR_STRAND_AZIMUTH_COSINE_4FF47447
 // Cosine kappa of the angle between light and viewer around a strand.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1813,7 +2109,10 @@ highp float vair_strand_azimuth_cosine(highp vec3 t, highp vec3 l, highp vec3 v)
         * inversesqrt(max(squares, 1e-37));
     return clamp(kappa, -1.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_AZIMUTH_COSINE_CROSS_61ECEDC7
+#define VAIR_STRAND_AZIMUTH_COSINE_CROSS_61ECEDC7
 // Cosine of the angle between light and viewer around a strand, by plain cross products. Variant of
 // vair_strand_azimuth_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1835,7 +2134,10 @@ highp float vair_strand_azimuth_cosine_cross(highp vec3 t, highp vec3 l, highp v
     highp float kappa = 1.1529215e18 * dot(a, b) * inversesqrt(max(squares, 1e-37));
     return clamp(kappa, -1.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_AZIMUTH_COSINE_DOTS_7DF261FD
+#define VAIR_STRAND_AZIMUTH_COSINE_DOTS_7DF261FD
 // Cosine of the angle between light and viewer around a strand, from three inner products. Variant
 // of vair_strand_azimuth_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1856,7 +2158,10 @@ highp float vair_strand_azimuth_cosine_dots(highp vec3 t, highp vec3 l, highp ve
     highp float squares = (1.0 - cos_l * cos_l) * (1.0 - cos_v * cos_v);
     return clamp((dot(l, v) - cos_l * cos_v) * inversesqrt(max(squares, 1e-37)), -1.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_DEFECT_B320E965
+#define VAIR_STRAND_DEFECT_B320E965
 // Defect 1 - vair_strand_cosine of a strand.
 //   t        strand tangent, root to tip; unit vector
 //   l        direction to the light; unit vector
@@ -1869,7 +2174,10 @@ highp float vair_strand_defect(highp vec3 t, highp vec3 l, highp vec3 v) {
     highp float along = dot(t, l + v);
     return 0.5 * (across * across + along * along);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_BDF353FF
+#define VAIR_STRAND_COSINE_BDF353FF
 // Largest cosine between v and a mirror direction of l, over all unit normals orthogonal to the
 // strand.
 //   t           strand tangent, root to tip; unit vector
@@ -1884,7 +2192,10 @@ highp float vair_strand_defect(highp vec3 t, highp vec3 l, highp vec3 v) {
 highp float vair_strand_cosine(highp vec3 t, highp vec3 l, highp vec3 v) {
     return 1.0 - vair_strand_defect(t, l, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_DIRECT_BC9B3E4B
+#define VAIR_STRAND_COSINE_DIRECT_BC9B3E4B
 // Strand cosine with sines taken from the cosines: the obvious form, with one root. Variant of
 // vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1904,7 +2215,10 @@ highp float vair_strand_cosine_direct(highp vec3 t, highp vec3 l, highp vec3 v) 
     highp float sines = sqrt(max((1.0 - cos_l * cos_l) * (1.0 - cos_v * cos_v), 0.0));
     return sines - cos_l * cos_v;
 }
+#endif
 
+#ifndef VAIR_STRAND_DEFECT_HALF_23618EC2
+#define VAIR_STRAND_DEFECT_HALF_23618EC2
 // Defect 1 - vair_strand_cosine of a strand by half angles: a square, from four squared lengths.
 //   t        strand tangent, root to tip; unit vector
 //   l        direction to the light; unit vector
@@ -1925,7 +2239,10 @@ highp float vair_strand_defect_half(highp vec3 t, highp vec3 l, highp vec3 v) {
     highp float gap = cosines - sines;
     return 0.125 * (gap * gap);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_HALF_5DFB26DB
+#define VAIR_STRAND_COSINE_HALF_5DFB26DB
 // Strand cosine by half angles, from four squared lengths. Variant of vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1939,7 +2256,10 @@ highp float vair_strand_defect_half(highp vec3 t, highp vec3 l, highp vec3 v) {
 highp float vair_strand_cosine_half(highp vec3 t, highp vec3 l, highp vec3 v) {
     return 1.0 - vair_strand_defect_half(t, l, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_BANKS_PRINTED_9C6516A6
+#define VAIR_STRAND_COSINE_BANKS_PRINTED_9C6516A6
 // Strand cosine as the lecture prints it for Banks: the exact negative of the right value. As the
 // lecture prints it; right: vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1955,7 +2275,10 @@ highp float vair_strand_cosine_half(highp vec3 t, highp vec3 l, highp vec3 v) {
 highp float vair_strand_cosine_banks_printed(highp vec3 t, highp vec3 l, highp vec3 v) {
     return dot(t, l) * dot(t, v) - vair_sin_angle(t, l) * vair_sin_angle(t, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_KAJIYA_PRINTED_EB12556D
+#define VAIR_STRAND_COSINE_KAJIYA_PRINTED_EB12556D
 // Strand cosine as the lecture prints it for Kajiya and Kay: right only where l or v points inward.
 // As the lecture prints it; right: vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1970,7 +2293,10 @@ highp float vair_strand_cosine_banks_printed(highp vec3 t, highp vec3 l, highp v
 highp float vair_strand_cosine_kajiya_printed(highp vec3 t, highp vec3 l, highp vec3 v) {
     return dot(t, l) * dot(t, v) + vair_sin_angle(t, l) * vair_sin_angle(t, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_B92A9DF9
+#define VAIR_STRAND_DIFFUSE_B92A9DF9
 // Diffuse factor of a thin cylinder: the sine of the angle between strand and light.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1986,7 +2312,10 @@ highp float vair_strand_cosine_kajiya_printed(highp vec3 t, highp vec3 l, highp 
 highp float vair_strand_diffuse(highp vec3 t, highp vec3 l) {
     return vair_sin_angle(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_HALF_6404AFAD
+#define VAIR_STRAND_DIFFUSE_HALF_6404AFAD
 // Diffuse factor of a thin cylinder by half angles: one root, good to 1e-4 rad. Variant of
 // vair_strand_diffuse.
 //   t           strand tangent, root to tip; unit vector
@@ -2001,7 +2330,10 @@ highp float vair_strand_diffuse(highp vec3 t, highp vec3 l) {
 highp float vair_strand_diffuse_half(highp vec3 t, highp vec3 l) {
     return vair_sin_angle_half(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_CROSS_490DEBE9
+#define VAIR_STRAND_DIFFUSE_CROSS_490DEBE9
 // Diffuse factor of a thin cylinder by the cross product: an absolute error of 1e-7. Variant of
 // vair_strand_diffuse.
 //   t           strand tangent, root to tip; unit vector
@@ -2016,7 +2348,10 @@ highp float vair_strand_diffuse_half(highp vec3 t, highp vec3 l) {
 highp float vair_strand_diffuse_cross(highp vec3 t, highp vec3 l) {
     return vair_sin_angle_cross(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_COSINE_6957433A
+#define VAIR_STRAND_DIFFUSE_COSINE_6957433A
 // Diffuse factor of a thin cylinder by the cosine: up to 9e-4 off along the strand. Variant of
 // vair_strand_diffuse.
 //   t           strand tangent, root to tip; unit vector
@@ -2031,7 +2366,10 @@ highp float vair_strand_diffuse_cross(highp vec3 t, highp vec3 l) {
 highp float vair_strand_diffuse_cosine(highp vec3 t, highp vec3 l) {
     return vair_sin_angle_cosine(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_E719E54E
+#define VAIR_STRAND_SPECULAR_E719E54E
 // Specular lobe of a strand: max(0, vair_strand_cosine)^exponent.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -2052,7 +2390,10 @@ highp float vair_strand_diffuse_cosine(highp vec3 t, highp vec3 l) {
 highp float vair_strand_specular(highp vec3 t, highp vec3 l, highp vec3 v, highp float exponent) {
     return vair_pow_one_minus(vair_strand_defect(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_FROM4_7A4B44CC
+#define VAIR_STRAND_SPECULAR_FROM4_7A4B44CC
 // Specular lobe of a strand for exponents from 4 on, without a logarithm. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2070,7 +2411,10 @@ highp float vair_strand_specular_from4(highp vec3 t, highp vec3 l, highp vec3 v,
     highp float exponent) {
     return vair_pow_one_minus_from4(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_GAUSS_970639DD
+#define VAIR_STRAND_SPECULAR_GAUSS_970639DD
 // Specular lobe of a strand for exponents from 8 on, by one exponential. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2087,7 +2431,10 @@ highp float vair_strand_specular_gauss(highp vec3 t, highp vec3 l, highp vec3 v,
     highp float exponent) {
     return vair_pow_one_minus_gauss(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_SQ16_65144C1C
+#define VAIR_STRAND_SPECULAR_SQ16_65144C1C
 // Specular lobe of a strand for exponents from 8 on, without a transcendental function. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2105,7 +2452,10 @@ highp float vair_strand_specular_sq16(highp vec3 t, highp vec3 l, highp vec3 v,
     highp float exponent) {
     return vair_pow_one_minus_sq16(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_FROM8_3087BB46
+#define VAIR_STRAND_SPECULAR_FROM8_3087BB46
 // Specular lobe of a strand for exponents from 8 on, by one exponential and without a division.
 // Variant of vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2121,7 +2471,10 @@ highp float vair_strand_specular_from8(highp vec3 t, highp vec3 l, highp vec3 v,
     highp float exponent) {
     return vair_pow_one_minus_from8(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_CUBIC8_3A40A12C
+#define VAIR_STRAND_SPECULAR_CUBIC8_3A40A12C
 // Specular lobe of a strand for exponents from 8 on, without transcendental function or division.
 // Variant of vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2138,7 +2491,10 @@ highp float vair_strand_specular_cubic8(highp vec3 t, highp vec3 l, highp vec3 v
     highp float exponent) {
     return vair_pow_one_minus_cubic8(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_DIRECT_3B2324F9
+#define VAIR_STRAND_SPECULAR_DIRECT_3B2324F9
 // Specular lobe of a strand as usually written: a power of the cosine. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2158,7 +2514,10 @@ highp float vair_strand_specular_direct(highp vec3 t, highp vec3 l, highp vec3 v
     highp float exponent) {
     return vair_safe_pow_exp2(vair_strand_cosine_direct(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_GAUSS_9681FC42
+#define VAIR_STRAND_SPECULAR_HALF_GAUSS_9681FC42
 // Half-vector lobe of a strand for exponents from 16 on, by one exponential. Variant of
 // vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -2174,7 +2533,10 @@ highp float vair_strand_specular_half_gauss(highp vec3 t, highp vec3 h, highp fl
     highp float c = dot(t, h);
     return vair_pow_one_minus_gauss(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_SQ16_515B0E40
+#define VAIR_STRAND_SPECULAR_HALF_SQ16_515B0E40
 // Half-vector lobe of a strand for exponents from 16 on, without a transcendental function. Variant
 // of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -2190,7 +2552,10 @@ highp float vair_strand_specular_half_sq16(highp vec3 t, highp vec3 h, highp flo
     highp float c = dot(t, h);
     return vair_pow_one_minus_sq16(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_TANGENT_FROM_MAP_APART_6B1A7A5B
+#define VAIR_TANGENT_FROM_MAP_APART_6B1A7A5B
 // Per-pixel strand tangent of a brushed surface, for tangents that are well off the normal. Variant
 // of vair_tangent_from_map.
 //   n            surface normal; unit vector
@@ -2212,7 +2577,10 @@ highp vec3 vair_tangent_from_map_apart(highp vec3 n, highp vec3 t, highp vec3 ma
     highp vec2 unit = squared > 1e-37 ? inversesqrt(max(squared, 1e-37)) * texel : vec2(1.0, 0.0);
     return unit.x * frame.tangent + unit.y * frame.bitangent;
 }
+#endif
 
+#ifndef VAIR_TANGENT_FROM_MAP_ORTHOGONAL_AA687E86
+#define VAIR_TANGENT_FROM_MAP_ORTHOGONAL_AA687E86
 // Per-pixel strand tangent of a brushed surface, for tangents that are orthogonal to the normal
 // already. Variant of vair_tangent_from_map.
 //   n            surface normal; unit vector
@@ -2234,7 +2602,10 @@ highp vec3 vair_tangent_from_map_orthogonal(highp vec3 n, highp vec3 t, highp ve
     highp vec2 unit = squared > 1e-37 ? inversesqrt(max(squared, 1e-37)) * texel : vec2(1.0, 0.0);
     return unit.x * frame.tangent + unit.y * frame.bitangent;
 }
+#endif
 
+#ifndef VAIR_TANGENT_SHIFT_APART_3DAF13E2
+#define VAIR_TANGENT_SHIFT_APART_3DAF13E2
 // Strand tangent tilted toward the surface normal, where the sum is not zero. Variant of
 // vair_tangent_shift.
 //   t           strand tangent, root to tip; unit vector
@@ -2251,7 +2622,10 @@ highp vec3 vair_tangent_from_map_orthogonal(highp vec3 n, highp vec3 t, highp ve
 highp vec3 vair_tangent_shift_apart(highp vec3 t, highp vec3 n, highp float shift) {
     return vair_safe_normalize_nonzero(t + shift * n, t);
 }
+#endif
 
+#ifndef VAIR_TANGENT_SHIFT_ORTHOGONAL_FA45FB35
+#define VAIR_TANGENT_SHIFT_ORTHOGONAL_FA45FB35
 // Strand tangent tilted toward a surface normal that is orthogonal to it. Variant of
 // vair_tangent_shift.
 //   t           strand tangent, root to tip; orthogonal to n; unit vector
@@ -2268,7 +2642,10 @@ highp vec3 vair_tangent_shift_apart(highp vec3 t, highp vec3 n, highp float shif
 highp vec3 vair_tangent_shift_orthogonal(highp vec3 t, highp vec3 n, highp float shift) {
     return inversesqrt(1.0 + shift * shift) * (t + shift * n);
 }
+#endif
 
+#ifndef VAIR_FUR_HAIR_AREA_95E54C5B
+#define VAIR_FUR_HAIR_AREA_95E54C5B
 // Silhouette area of one hair, a truncated cone, seen from the side.
 //   hair_length  length of the hair; in [0, 1000]
 //   radius_base  radius at the skin; in [0, 10]
@@ -2284,7 +2661,10 @@ highp float vair_fur_hair_area(highp float hair_length, highp float radius_base,
     highp float radius_tip) {
     return hair_length * (radius_base + radius_tip);
 }
+#endif
 
+#ifndef VAIR_FUR_SLAB_DEPTH_72D638A4
+#define VAIR_FUR_SLAB_DEPTH_72D638A4
 // Optical depth from quantities that a caller already has.
 //   hair_cover  hair area that stands on a unit of skin: density times area of a hair; in [0, 2e13]
 //   sine        sine of the angle between the direction and the hairs; in [0, 1]
@@ -2296,7 +2676,10 @@ highp float vair_fur_hair_area(highp float hair_length, highp float radius_base,
 highp float vair_fur_slab_depth(highp float hair_cover, highp float sine, highp float cosine) {
     return min(hair_cover * sine / max(cosine, 1e-12), 1e9);
 }
+#endif
 
+#ifndef VAIR_FUR_GEOMETRY_F6B84319
+#define VAIR_FUR_GEOMETRY_F6B84319
 // Angles and optical depths of a coat for one light.
 //   coat        geometry of the coat
 //   t           hair direction, root to tip; unit vector
@@ -2332,7 +2715,10 @@ vair_FurGeometry vair_fur_geometry(vair_FurCoat coat, highp vec3 t, highp vec3 n
         vair_fur_slab_depth(hair_cover, sin_v, dot(n, v)),
         vair_fur_slab_depth(hair_cover, sin_l, n_dot_l));
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_668CE5E4
+#define VAIR_FUR_WEIGHTS_GOLDMAN_668CE5E4
 // Weights of hair and skin by Goldman's rule: opacity along the view times shadow along the light.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
 //   depth_light  optical depth of the coat along the light; in [0, 1e9]
@@ -2359,7 +2745,10 @@ vair_FurWeights vair_fur_weights_goldman(highp float depth_view, highp float dep
     highp float hair = opacity * (1.0 - overlap + overlap * clear_light);
     return vair_FurWeights(hair, clear_view * clear_light);
 }
+#endif
 
+#ifndef VAIR_FUR_DIRECTIONAL_ATTENUATION_979D1AE1
+#define VAIR_FUR_DIRECTIONAL_ATTENUATION_979D1AE1
 // Attenuation f_dir of a hair: rho_reflect when front lit, rho_transmit when back lit.
 //   azimuth_cosine  cosine of the angle between light and viewer around the hair, see
 //                   vair_strand_azimuth_cosine; in [-1, 1]
@@ -2376,7 +2765,10 @@ highp float vair_fur_directional_attenuation(highp float azimuth_cosine, highp f
     highp float rho_transmit) {
     return 0.5 * (rho_reflect + rho_transmit) + 0.5 * azimuth_cosine * (rho_reflect - rho_transmit);
 }
+#endif
 
+#ifndef VAIR_FUR_SURFACE_ATTENUATION_A2F0314D
+#define VAIR_FUR_SURFACE_ATTENUATION_A2F0314D
 // Attenuation f_surface of hairs on the side that is turned away from the light.
 //   n_dot_l      cosine between surface normal and light; in [-1, 1]
 //   rho_surface  strength of the shadow; 0 gives 1 everywhere; in [0, 1]
@@ -2395,7 +2787,10 @@ highp float vair_fur_surface_attenuation(highp float n_dot_l, highp float rho_su
     highp float cos_dark, highp float cos_lit) {
     return 1.0 + rho_surface * (vair_safe_smoothstep(cos_dark, cos_lit, n_dot_l) - 1.0);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_BLEND_3EAE7D28
+#define VAIR_FAKEFUR_BLEND_3EAE7D28
 // Hair and skin, each attenuated and weighted, under one light.
 //   optics     optical properties of the hairs
 //   geometry   directions and depths, see vair_fur_geometry
@@ -2416,7 +2811,10 @@ highp vec3 vair_fakefur_blend(vair_FurOptics optics, vair_FurGeometry geometry,
     highp vec3 hair = optics.k_diffuse * geometry.sin_l + optics.k_specular * highlight;
     return light * (hair * (weights.hair * directional * surface) + skin * weights.skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_D441CC40
+#define VAIR_FAKEFUR_SHADE_D441CC40
 // Light that a fur coat sends to the viewer under one light, by Goldman's model.
 //   coat        geometry of the coat
 //   optics      optical properties of the hairs
@@ -2455,7 +2853,10 @@ highp vec3 vair_fakefur_shade(vair_FurCoat coat, vair_FurOptics optics, highp ve
     highp float highlight = vair_pow_one_minus(geometry.defect, optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_FROM4_071D8F9A
+#define VAIR_FAKEFUR_SHADE_FROM4_071D8F9A
 // Goldman's model for highlights of exponent 4 and more, without a logarithm. Variant of
 // vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2483,7 +2884,10 @@ highp vec3 vair_fakefur_shade_from4(vair_FurCoat coat, vair_FurOptics optics, hi
     highp float highlight = vair_pow_one_minus_from4(geometry.defect, optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_C03E2865
+#define VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_C03E2865
 // Goldman's weights without an exponential and with one division. Variant of
 // vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -2506,7 +2910,10 @@ vair_FurWeights vair_fur_weights_goldman_rational(highp float depth_view, highp 
     highp float hair = growth_view * (1.0 + (1.0 - overlap) * growth_light) * skin;
     return vair_FurWeights(hair, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_RATIONAL_SQ16_9CCE3695
+#define VAIR_FAKEFUR_SHADE_RATIONAL_SQ16_9CCE3695
 // Goldman's model for highlights of exponent 16 and more, without exponential or logarithm. Variant
 // of vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2535,7 +2942,10 @@ highp vec3 vair_fakefur_shade_rational_sq16(vair_FurCoat coat, vair_FurOptics op
     highp float highlight = vair_pow_one_minus_sq16(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_SLAB_4FCF30C0
+#define VAIR_FUR_WEIGHTS_SLAB_4FCF30C0
 // Weights of hair and skin in a uniform coat whose hairs scatter the light once.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
 //   depth_light  optical depth of the coat along the light; in [0, 1e9]
@@ -2560,7 +2970,10 @@ vair_FurWeights vair_fur_weights_slab(highp float depth_view, highp float depth_
     highp float mean = depth < 0.7 ? series : (1.0 - clear) / max(depth, 0.7);
     return vair_FurWeights(depth_view * mean, clear);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_B737D721
+#define VAIR_FAKEFUR_SHADE_SLAB_B737D721
 // Fake fur with the exact weights of a uniform coat instead of Goldman's rule: another model.
 // Variant of vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2595,7 +3008,10 @@ highp vec3 vair_fakefur_shade_slab(vair_FurCoat coat, vair_FurOptics optics, hig
     highp float highlight = vair_pow_one_minus(geometry.defect, optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_SLAB_RATIONAL_BAE78526
+#define VAIR_FUR_WEIGHTS_SLAB_RATIONAL_BAE78526
 // Weights of the uniform coat without an exponential and with one division. Variant of
 // vair_fur_weights_slab.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -2615,7 +3031,10 @@ vair_FurWeights vair_fur_weights_slab_rational(highp float depth_view, highp flo
     highp float skin = 1.0 / (1.0 + depth * growth);
     return vair_FurWeights(depth_view * growth * skin, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_SQ16_C3C0DB79
+#define VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_SQ16_C3C0DB79
 // Fake fur of a uniform coat for highlights of exponent 16 and more, without exponential or
 // logarithm. Variant of vair_fakefur_shade_slab.
 //   coat        geometry of the coat
@@ -2643,7 +3062,10 @@ highp vec3 vair_fakefur_shade_slab_rational_sq16(vair_FurCoat coat, vair_FurOpti
     highp float highlight = vair_pow_one_minus_sq16(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_HAIR_AREA_PRINTED_D5E1928F
+#define VAIR_FUR_HAIR_AREA_PRINTED_D5E1928F
 // Area of a hair as the lecture prints it: half the silhouette, right only if its radii mean
 // diameters. As the lecture prints it; right: vair_fur_hair_area.
 //   hair_length  length of the hair; in [0, 1000]
@@ -2658,7 +3080,10 @@ highp float vair_fur_hair_area_printed(highp float hair_length, highp float radi
     highp float radius_tip) {
     return hair_length * (radius_base + radius_tip) * 0.5;
 }
+#endif
 
+#ifndef VAIR_FUR_OBLIQUITY_9A762D80
+#define VAIR_FUR_OBLIQUITY_9A762D80
 // Ratio of a coat's optical depth along w to the hair area that stands on a unit of skin.
 //   t           hair direction; unit vector
 //   n           surface normal; unit vector
@@ -2677,7 +3102,10 @@ highp float vair_fur_hair_area_printed(highp float hair_length, highp float radi
 highp float vair_fur_obliquity(highp vec3 t, highp vec3 n, highp vec3 w) {
     return vair_sin_angle(w, t) / max(dot(w, n), 1e-12);
 }
+#endif
 
+#ifndef VAIR_TURN_OF_BFEDDAA8
+#define VAIR_TURN_OF_BFEDDAA8
 // Angle of the point (x, y) from the x axis as a share of a full turn: atan2(y, x) / (2 pi).
 //   y           second coordinate; in [-1e30, 1e30]
 //   x           first coordinate; in [-1e30, 1e30]
@@ -2703,7 +3131,10 @@ highp float vair_turn_of(highp float y, highp float x) {
     highp float upper = x < 0.0 ? 0.5 - quadrant : quadrant;
     return y < 0.0 ? -upper : upper;
 }
+#endif
 
+#ifndef VAIR_ANGLE_OF_COSINE_B00DC4B6
+#define VAIR_ANGLE_OF_COSINE_B00DC4B6
 // Angle whose cosine is x.
 //   x        cosine, in [-1, 1]
 //   returns  acos(x), in [0, pi]
@@ -2713,7 +3144,10 @@ highp float vair_turn_of(highp float y, highp float x) {
 highp float vair_angle_of_cosine(highp float x) {
     return 6.2831855 * vair_turn_of(vair_safe_sqrt((1.0 - x) * (1.0 + x)), x);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_PRINTED_FBE633C5
+#define VAIR_FAKEFUR_SHADE_PRINTED_FBE633C5
 // Goldman's model as the lecture prints it, misprints included. As the lecture prints it; right:
 // vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2752,7 +3186,10 @@ highp vec3 vair_fakefur_shade_printed(vair_FurCoat coat, vair_FurOptics optics, 
     highp vec3 hair = bare * ((1.0 - 0.5 * opacity) * directional * surface);
     return light * (hair * opacity + skin * ((1.0 - opacity) * (1.0 - opacity)));
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_RATIONAL_CUBIC8_23A70F00
+#define VAIR_FAKEFUR_SHADE_RATIONAL_CUBIC8_23A70F00
 // Goldman's model for highlights of exponent 8 and more, without exponential or logarithm. Variant
 // of vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2781,7 +3218,10 @@ highp vec3 vair_fakefur_shade_rational_cubic8(vair_FurCoat coat, vair_FurOptics 
     highp float highlight = vair_pow_one_minus_cubic8(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_DOUBLING_SHORT_C30E96A9
+#define VAIR_FUR_WEIGHTS_GOLDMAN_DOUBLING_SHORT_C30E96A9
 // Goldman's weights without an exponential and without a division. Variant of
 // vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -2801,7 +3241,10 @@ vair_FurWeights vair_fur_weights_goldman_doubling_short(highp float depth_view,
     highp float hair = opacity_view * (1.0 - overlap * opacity_light);
     return vair_FurWeights(hair, (1.0 - opacity_view) * (1.0 - opacity_light));
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_DOUBLING_CUBIC8_B7A60241
+#define VAIR_FAKEFUR_SHADE_DOUBLING_CUBIC8_B7A60241
 // Goldman's model for highlights of exponent 8 and more, by polynomials alone. Variant of
 // vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2830,7 +3273,10 @@ highp vec3 vair_fakefur_shade_doubling_cubic8(vair_FurCoat coat, vair_FurOptics 
     highp float highlight = vair_pow_one_minus_cubic8(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_FROM4_5E7C164F
+#define VAIR_FAKEFUR_SHADE_SLAB_FROM4_5E7C164F
 // Fake fur of a uniform coat for highlights of exponent 4 and more, without a logarithm. Variant of
 // vair_fakefur_shade_slab.
 //   coat        geometry of the coat
@@ -2857,7 +3303,10 @@ highp vec3 vair_fakefur_shade_slab_from4(vair_FurCoat coat, vair_FurOptics optic
     highp float highlight = vair_pow_one_minus_from4(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_CUBIC8_5A05D9D0
+#define VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_CUBIC8_5A05D9D0
 // Fake fur of a uniform coat for highlights of exponent 8 and more, without exponential or
 // logarithm. Variant of vair_fakefur_shade_slab.
 //   coat        geometry of the coat
@@ -2886,7 +3335,10 @@ highp vec3 vair_fakefur_shade_slab_rational_cubic8(vair_FurCoat coat, vair_FurOp
     highp float highlight = vair_pow_one_minus_cubic8(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_AVERAGE_F4D7665B
+#define VAIR_FUR_AVERAGE_F4D7665B
 // Average hair geometry of a footprint from the mean of its unit hair directions.
 //   tangent_mean  mean of unit vectors, as the filtered (mip mapped) tangent map gives it; length
 //                 in [0, 1]
@@ -2904,7 +3356,10 @@ vair_FurAverage vair_fur_average(highp vec3 tangent_mean) {
     highp float m = clamp(length(tangent_mean), 0.001, 1.0);
     return vair_FurAverage(vair_safe_normalize(tangent_mean, vec3(0.0, 0.0, 1.0)), (1.0 - m) / m);
 }
+#endif
 
+#ifndef VAIR_FUR_DIRECTIONAL_ATTENUATION_BLEND_AB90693D
+#define VAIR_FUR_DIRECTIONAL_ATTENUATION_BLEND_AB90693D
 // Attenuation f_dir of a hair, as a step from rho_transmit towards rho_reflect. Variant of
 // vair_fur_directional_attenuation.
 //   azimuth_cosine  cosine of the angle between light and viewer around the hair, see
@@ -2922,7 +3377,10 @@ highp float vair_fur_directional_attenuation_blend(highp float azimuth_cosine,
     highp float rho_reflect, highp float rho_transmit) {
     return rho_transmit + (0.5 + 0.5 * azimuth_cosine) * (rho_reflect - rho_transmit);
 }
+#endif
 
+#ifndef VAIR_FUR_DIRECTIONAL_ATTENUATION_MEAN_C96E5785
+#define VAIR_FUR_DIRECTIONAL_ATTENUATION_MEAN_C96E5785
 // Attenuation f_dir of a hair whatever side it is seen from. Variant of
 // vair_fur_directional_attenuation.
 //   azimuth_cosine  not used: what computes it can be left out; in [-1, 1]
@@ -2939,7 +3397,10 @@ highp float vair_fur_directional_attenuation_mean(highp float azimuth_cosine,
     highp float rho_reflect, highp float rho_transmit) {
     return 0.5 * (rho_reflect + rho_transmit);
 }
+#endif
 
+#ifndef VAIR_FUR_OBLIQUITY_HALF_21AC7E70
+#define VAIR_FUR_OBLIQUITY_HALF_21AC7E70
 // Ratio of a coat's optical depth along w to the hair area below it, for w off the hairs. Variant
 // of vair_fur_obliquity.
 //   t           hair direction; unit vector
@@ -2954,7 +3415,10 @@ highp float vair_fur_directional_attenuation_mean(highp float azimuth_cosine,
 highp float vair_fur_obliquity_half(highp vec3 t, highp vec3 n, highp vec3 w) {
     return vair_sin_angle_half(w, t) / max(dot(w, n), 1e-12);
 }
+#endif
 
+#ifndef VAIR_FUR_OBLIQUITY_CROSS_C66D6FDF
+#define VAIR_FUR_OBLIQUITY_CROSS_C66D6FDF
 // Ratio of a coat's optical depth along w to the hair area below it, for w off the hairs. Variant
 // of vair_fur_obliquity.
 //   t           hair direction; unit vector
@@ -2969,7 +3433,10 @@ highp float vair_fur_obliquity_half(highp vec3 t, highp vec3 n, highp vec3 w) {
 highp float vair_fur_obliquity_cross(highp vec3 t, highp vec3 n, highp vec3 w) {
     return vair_sin_angle_cross(w, t) / max(dot(w, n), 1e-12);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_80A0E9AF
+#define VAIR_FUR_OPACITY_80A0E9AF
 // Share of the skin that is hidden by hairs.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
 //                  1e9]
@@ -2982,7 +3449,10 @@ highp float vair_fur_obliquity_cross(highp vec3 t, highp vec3 n, highp vec3 w) {
 highp float vair_fur_opacity(highp float optical_depth) {
     return vair_one_minus_exp_neg(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_RATIONAL_B2629390
+#define VAIR_FUR_OPACITY_RATIONAL_B2629390
 // Share of the skin that is hidden by hairs, as a ratio of polynomials. Variant of
 // vair_fur_opacity.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
@@ -2995,7 +3465,10 @@ highp float vair_fur_opacity(highp float optical_depth) {
 highp float vair_fur_opacity_rational(highp float optical_depth) {
     return vair_one_minus_exp_neg_rational(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_DOUBLING_SHORT_111BFC2D
+#define VAIR_FUR_OPACITY_DOUBLING_SHORT_111BFC2D
 // Share of the skin that is hidden by hairs, by four doublings of a quadratic. Variant of
 // vair_fur_opacity.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
@@ -3008,7 +3481,10 @@ highp float vair_fur_opacity_rational(highp float optical_depth) {
 highp float vair_fur_opacity_doubling_short(highp float optical_depth) {
     return vair_one_minus_exp_neg_doubling_short(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_RATIONAL_COARSE_10D9E908
+#define VAIR_FUR_OPACITY_RATIONAL_COARSE_10D9E908
 // Share of the skin that is hidden by hairs, as a ratio of polynomials of low degree. Variant of
 // vair_fur_opacity.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
@@ -3021,7 +3497,10 @@ highp float vair_fur_opacity_doubling_short(highp float optical_depth) {
 highp float vair_fur_opacity_rational_coarse(highp float optical_depth) {
     return vair_one_minus_exp_neg_rational_coarse(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPTICAL_DEPTH_7BE0B117
+#define VAIR_FUR_OPTICAL_DEPTH_7BE0B117
 // Optical depth of a coat along a direction: the mean number of hairs that a ray meets.
 //   density     hairs per unit of skin area; in [0, 1e9]
 //   hair_area   silhouette area of one hair, see vair_fur_hair_area; in [0, 20000]
@@ -3042,7 +3521,10 @@ highp float vair_fur_optical_depth(highp float density, highp float hair_area, h
     highp vec3 n, highp vec3 w) {
     return vair_fur_slab_depth(density * hair_area, vair_sin_angle(w, t), dot(w, n));
 }
+#endif
 
+#ifndef VAIR_FUR_OPTICAL_DEPTH_HALF_3ECADA32
+#define VAIR_FUR_OPTICAL_DEPTH_HALF_3ECADA32
 // Optical depth of a coat along a direction off the hairs. Variant of vair_fur_optical_depth.
 //   density     hairs per unit of skin area; in [0, 1e9]
 //   hair_area   silhouette area of one hair, see vair_fur_hair_area; in [0, 20000]
@@ -3059,7 +3541,10 @@ highp float vair_fur_optical_depth_half(highp float density, highp float hair_ar
     highp vec3 n, highp vec3 w) {
     return vair_fur_slab_depth(density * hair_area, vair_sin_angle_half(w, t), dot(w, n));
 }
+#endif
 
+#ifndef VAIR_FUR_OPTICAL_DEPTH_CROSS_B458E219
+#define VAIR_FUR_OPTICAL_DEPTH_CROSS_B458E219
 // Optical depth of a coat along a direction off the hairs. Variant of vair_fur_optical_depth.
 //   density     hairs per unit of skin area; in [0, 1e9]
 //   hair_area   silhouette area of one hair, see vair_fur_hair_area; in [0, 20000]
@@ -3076,7 +3561,10 @@ highp float vair_fur_optical_depth_cross(highp float density, highp float hair_a
     highp vec3 n, highp vec3 w) {
     return vair_fur_slab_depth(density * hair_area, vair_sin_angle_cross(w, t), dot(w, n));
 }
+#endif
 
+#ifndef VAIR_FUR_SOFT_EXPONENT_C21E786D
+#define VAIR_FUR_SOFT_EXPONENT_C21E786D
 // Exponent of the strand highlight averaged over the hairs of a footprint.
 //   exponent        exponent p of a single hair; in [0, 100000]
 //   variance        variance of the hair directions, see vair_fur_average; in [0, 999]
@@ -3096,7 +3584,10 @@ highp float vair_fur_soft_exponent(highp float exponent, highp float variance,
     highp float azimuth_cosine) {
     return exponent / (1.0 + 2.0 * (1.0 + azimuth_cosine) * exponent * variance);
 }
+#endif
 
+#ifndef VAIR_FUR_SURFACE_ATTENUATION_RISING_DBA133C0
+#define VAIR_FUR_SURFACE_ATTENUATION_RISING_DBA133C0
 // Attenuation f_surface of hairs by the surface below them, for cos_dark < cos_lit. Variant of
 // vair_fur_surface_attenuation.
 //   n_dot_l      cosine between surface normal and light; in [-1, 1]
@@ -3113,7 +3604,10 @@ highp float vair_fur_surface_attenuation_rising(highp float n_dot_l, highp float
     highp float cos_dark, highp float cos_lit) {
     return 1.0 + rho_surface * (vair_safe_smoothstep_rising(cos_dark, cos_lit, n_dot_l) - 1.0);
 }
+#endif
 
+#ifndef VAIR_FUR_SURFACE_ATTENUATION_RAMP_9D526C4C
+#define VAIR_FUR_SURFACE_ATTENUATION_RAMP_9D526C4C
 // Attenuation f_surface of hairs by the surface below them, by a straight step, for cos_dark <
 // cos_lit. Variant of vair_fur_surface_attenuation.
 //   n_dot_l      cosine between surface normal and light; in [-1, 1]
@@ -3130,7 +3624,10 @@ highp float vair_fur_surface_attenuation_ramp(highp float n_dot_l, highp float r
     highp float cos_dark, highp float cos_lit) {
     return 1.0 + rho_surface * (vair_safe_smoothstep_ramp(cos_dark, cos_lit, n_dot_l) - 1.0);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_QUADRATIC16_F7F4D067
+#define VAIR_FUR_WEIGHTS_GOLDMAN_QUADRATIC16_F7F4D067
 // Goldman's weights from transmittances that are sixteenth powers: no exponential, no division.
 // Variant of vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -3151,7 +3648,10 @@ vair_FurWeights vair_fur_weights_goldman_quadratic16(highp float depth_view,
     highp float hair = (1.0 - clear_view) * (1.0 - overlap + overlap * clear_light);
     return vair_FurWeights(hair, clear_view * clear_light);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_COARSE_D0278185
+#define VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_COARSE_D0278185
 // Goldman's weights by polynomials of low degree and one division: one percent. Variant of
 // vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -3171,7 +3671,10 @@ vair_FurWeights vair_fur_weights_goldman_rational_coarse(highp float depth_view,
     highp float hair = growth_view * (1.0 + (1.0 - overlap) * growth_light) * skin;
     return vair_FurWeights(hair, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_SLAB_RATIONAL_COARSE_E6AB02BD
+#define VAIR_FUR_WEIGHTS_SLAB_RATIONAL_COARSE_E6AB02BD
 // Weights of the uniform coat by a polynomial of low degree and one division: one percent. Variant
 // of vair_fur_weights_slab.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -3189,7 +3692,10 @@ vair_FurWeights vair_fur_weights_slab_rational_coarse(highp float depth_view,
     highp float skin = 1.0 / (1.0 + depth * growth);
     return vair_FurWeights(depth_view * growth * skin, skin);
 }
+#endif
 
+#ifndef VAIR_BLEND_OVER_3983CB22
+#define VAIR_BLEND_OVER_3983CB22
 // Colour of a layer drawn over another one, with straight alpha.
 //   under       linear RGB behind the layer; in [0, 10000]
 //   over        linear RGB of the layer, not multiplied by alpha; in [0, 10000]
@@ -3207,7 +3713,10 @@ vair_FurWeights vair_fur_weights_slab_rational_coarse(highp float depth_view,
 highp vec3 vair_blend_over(highp vec3 under, highp vec3 over, highp float alpha) {
     return under * max(1.0 - alpha, 0.0) + over * alpha;
 }
+#endif
 
+#ifndef VAIR_FIN_NORMAL_A37AB70E
+#define VAIR_FIN_NORMAL_A37AB70E
 // Normal of the fin that stands on an edge of the mesh.
 //   edge        difference of the two vertices of the edge, of any length; length in [1e-6,
 //               1000000]
@@ -3225,7 +3734,10 @@ highp vec3 vair_fin_normal(highp vec3 edge, highp vec3 n) {
         - edge.y * n.x);
     return vair_safe_normalize(across, vair_frame_from_normal(n).tangent);
 }
+#endif
 
+#ifndef VAIR_FIN_NORMAL_DOT_FE53212F
+#define VAIR_FIN_NORMAL_DOT_FE53212F
 // Normal of the fin that stands on an edge of ordinary length. Variant of vair_fin_normal.
 //   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6
 //   n           surface normal; unit vector
@@ -3240,7 +3752,10 @@ highp vec3 vair_fin_normal_dot(highp vec3 edge, highp vec3 n) {
         - edge.y * n.x);
     return vair_safe_normalize_dot(across, vair_frame_from_normal(n).tangent);
 }
+#endif
 
+#ifndef VAIR_FIN_NORMAL_APART_EBC9168B
+#define VAIR_FIN_NORMAL_APART_EBC9168B
 // Normal of the fin that stands on an edge well off the surface normal. Variant of vair_fin_normal.
 //   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6
 //   n           surface normal; unit vector
@@ -3255,7 +3770,10 @@ highp vec3 vair_fin_normal_apart(highp vec3 edge, highp vec3 n) {
         - edge.y * n.x);
     return inversesqrt(max(dot(across, across), 1e-37)) * across;
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_0454E899
+#define VAIR_FIN_OPACITY_0454E899
 // Opacity of a fin: it fades in as it turns its face to the viewer.
 //   v           direction to the viewer; unit vector
 //   n_fin       normal of the fin, see vair_fin_normal; its sign does not matter; unit vector
@@ -3267,7 +3785,10 @@ highp vec3 vair_fin_normal_apart(highp vec3 edge, highp vec3 n) {
 highp float vair_fin_opacity(highp vec3 v, highp vec3 n_fin) {
     return clamp(2.0 * abs(dot(v, n_fin)) - 1.0, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_SILHOUETTE_F0D0156E
+#define VAIR_FIN_OPACITY_SILHOUETTE_F0D0156E
 // Opacity of a fin from the two faces that share its edge.
 //   facing_a    cosine between the direction to the viewer and the normal of one face; in [-1, 1]
 //   facing_b    the same for the other face; in [-1, 1]
@@ -3284,7 +3805,10 @@ highp float vair_fin_opacity_silhouette(highp float facing_a, highp float facing
     highp float grazing = min(abs(facing_a), abs(facing_b)) / max(threshold, 1e-6);
     return facing_a * facing_b <= 0.0 ? 1.0 : clamp(1.0 - grazing, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_SURFACE_2A88E746
+#define VAIR_FIN_OPACITY_SURFACE_2A88E746
 // Opacity of a fin from the surface normal alone: an upper bound of vair_fin_opacity.
 //   v           direction to the viewer; unit vector
 //   n           surface normal; unit vector
@@ -3298,7 +3822,10 @@ highp float vair_fin_opacity_silhouette(highp float facing_a, highp float facing
 highp float vair_fin_opacity_surface(highp vec3 v, highp vec3 n) {
     return clamp(2.0 * vair_sin_angle(v, n) - 1.0, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_SURFACE_COSINE_C282F632
+#define VAIR_FIN_OPACITY_SURFACE_COSINE_C282F632
 // Opacity of a fin from the surface normal alone, by the cosine. Variant of
 // vair_fin_opacity_surface.
 //   v           direction to the viewer; unit vector
@@ -3312,7 +3839,10 @@ highp float vair_fin_opacity_surface(highp vec3 v, highp vec3 n) {
 highp float vair_fin_opacity_surface_cosine(highp vec3 v, highp vec3 n) {
     return clamp(2.0 * vair_sin_angle_cosine(v, n) - 1.0, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FIN_POSITION_757A9181
+#define VAIR_FIN_POSITION_757A9181
 // Position of a fin vertex: an edge of the mesh is drawn as a quad, once with w = 0 and once with w
 // = 1.
 //   position     vertex of the edge, in scene units; in [-1000, 1000]
@@ -3330,7 +3860,10 @@ highp vec3 vair_fin_position(highp vec3 position, highp vec3 n, highp float w,
     highp float coat_length) {
     return position + w * coat_length * n;
 }
+#endif
 
+#ifndef VAIR_LAYERED_ALPHA_29184133
+#define VAIR_LAYERED_ALPHA_29184133
 // Opacity of a number of equal layers, or of a share of one.
 //   alpha       opacity of one layer, in [0, 1]
 //   layers      number of layers, in [1e-4, 1e5]
@@ -3343,7 +3876,10 @@ highp float vair_layered_alpha(highp float alpha, highp float layers) {
     highp float depth = -layers * vair_log_one_minus(min(alpha, 0.99999994));
     return alpha < 1.0 ? vair_one_minus_exp_neg(depth) : 1.0;
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_RESAMPLE_718DC84F
+#define VAIR_SHELL_ALPHA_RESAMPLE_718DC84F
 // Opacity per layer that keeps the opacity of the whole coat for another number of layers.
 //   alpha       opacity of a layer as authored; in [0, 1]
 //   authored    number of blended layers, the opaque base not counted, that alpha was made for; in
@@ -3358,7 +3894,10 @@ highp float vair_layered_alpha(highp float alpha, highp float layers) {
 highp float vair_shell_alpha_resample(highp float alpha, highp float authored, highp float drawn) {
     return vair_layered_alpha(alpha, authored / max(drawn, 1.0));
 }
+#endif
 
+#ifndef VAIR_LAYERED_ALPHA_DIRECT_13D17C85
+#define VAIR_LAYERED_ALPHA_DIRECT_13D17C85
 // Opacity of a number of equal layers, to a small absolute error.
 //   alpha       opacity of one layer, in [0, 1]
 //   layers      number of layers, in [1e-4, 1e5]
@@ -3370,7 +3909,10 @@ highp float vair_layered_alpha_direct(highp float alpha, highp float layers) {
     highp float left = exp(max(layers * log(max(1.0 - alpha, 1.2e-38)), -80.0));
     return alpha < 1.0 ? 1.0 - left : 1.0;
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_RESAMPLE_DIRECT_C195D575
+#define VAIR_SHELL_ALPHA_RESAMPLE_DIRECT_C195D575
 // Opacity per layer that keeps the opacity of the whole coat for another number of layers. Variant
 // of vair_shell_alpha_resample.
 //   alpha       opacity of a layer as authored; in [0, 1]
@@ -3386,7 +3928,10 @@ highp float vair_shell_alpha_resample_direct(highp float alpha, highp float auth
     highp float drawn) {
     return vair_layered_alpha_direct(alpha, authored / max(drawn, 1.0));
 }
+#endif
 
+#ifndef VAIR_LAYERED_ALPHA_THIN_1E9CFB69
+#define VAIR_LAYERED_ALPHA_THIN_1E9CFB69
 // Opacity of a number of equal layers that are at most half opaque, to 0.1 percent.
 //   alpha       opacity of one layer, in [0, 0.5]
 //   layers      number of layers, in [1e-4, 1e5]
@@ -3398,7 +3943,10 @@ highp float vair_shell_alpha_resample_direct(highp float alpha, highp float auth
 highp float vair_layered_alpha_thin(highp float alpha, highp float layers) {
     return vair_one_minus_exp_neg_doubling_short(-layers * vair_log_one_minus_thin(alpha));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_RESAMPLE_THIN_B81E87D7
+#define VAIR_SHELL_ALPHA_RESAMPLE_THIN_B81E87D7
 // Opacity per layer that keeps the opacity of the whole coat for another number of layers. Variant
 // of vair_shell_alpha_resample.
 //   alpha       opacity of a layer as authored, at most 1/2; in [0, 0.5]
@@ -3414,7 +3962,10 @@ highp float vair_shell_alpha_resample_thin(highp float alpha, highp float author
     highp float drawn) {
     return vair_layered_alpha_thin(alpha, authored / max(drawn, 1.0));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_VIEW_8A553936
+#define VAIR_SHELL_ALPHA_VIEW_8A553936
 // Opacity of a layer along a slanted line of sight.
 //   alpha       opacity of the layer seen along the normal; in [0, 1]
 //   n_dot_v     cosine between surface normal and viewer; shells are seen from behind too, so its
@@ -3428,7 +3979,10 @@ highp float vair_shell_alpha_resample_thin(highp float alpha, highp float author
 highp float vair_shell_alpha_view(highp float alpha, highp float n_dot_v) {
     return vair_layered_alpha(alpha, 1.0 / max(abs(n_dot_v), 1e-5));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_VIEW_DIRECT_791124FD
+#define VAIR_SHELL_ALPHA_VIEW_DIRECT_791124FD
 // Opacity of a layer along a slanted line of sight. Variant of vair_shell_alpha_view.
 //   alpha       opacity of the layer seen along the normal; in [0, 1]
 //   n_dot_v     cosine between surface normal and viewer; its sign is ignored; in [-1, 1]
@@ -3442,7 +3996,10 @@ highp float vair_shell_alpha_view(highp float alpha, highp float n_dot_v) {
 highp float vair_shell_alpha_view_direct(highp float alpha, highp float n_dot_v) {
     return vair_layered_alpha_direct(alpha, 1.0 / max(abs(n_dot_v), 1e-5));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_VIEW_THIN_C18D81C1
+#define VAIR_SHELL_ALPHA_VIEW_THIN_C18D81C1
 // Opacity of a layer along a slanted line of sight. Variant of vair_shell_alpha_view.
 //   alpha       opacity of the layer seen along the normal, at most 1/2; in [0, 0.5]
 //   n_dot_v     cosine between surface normal and viewer; its sign is ignored; in [-1, 1]
@@ -3455,7 +4012,10 @@ highp float vair_shell_alpha_view_direct(highp float alpha, highp float n_dot_v)
 highp float vair_shell_alpha_view_thin(highp float alpha, highp float n_dot_v) {
     return vair_layered_alpha_thin(alpha, 1.0 / max(abs(n_dot_v), 1e-5));
 }
+#endif
 
+#ifndef VAIR_SHELL_HEIGHT_09493D2E
+#define VAIR_SHELL_HEIGHT_09493D2E
 // Height of a layer above the skin as a share of the coat's length.
 //   layer       index of the layer; 0 is the opaque base at the skin; in [0, 256]
 //   layers      number of layers, the base included; in [0, 256]
@@ -3473,7 +4033,10 @@ highp float vair_shell_height(highp uint layer, highp uint layers) {
     highp float outer = layers > 1u ? 1.0 : 0.0;
     return (layer >= top || layers <= 1u) ? outer : inner;
 }
+#endif
 
+#ifndef VAIR_SHELL_OFFSET_DC142BE1
+#define VAIR_SHELL_OFFSET_DC142BE1
 // Position of a vertex on the shell at a height above the skin, with combed and bent hairs.
 //   position     vertex on the skin, in scene units; in [-1000, 1000]
 //   n            surface normal; unit vector
@@ -3498,7 +4061,10 @@ highp vec3 vair_shell_offset(highp vec3 position, highp vec3 n, highp float coat
     highp vec3 along = n + height * (comb + height * force);
     return position + coat_length * height * vair_safe_normalize(along, n);
 }
+#endif
 
+#ifndef VAIR_SHELL_OFFSET_DOT_6070C724
+#define VAIR_SHELL_OFFSET_DOT_6070C724
 // Position of a vertex on the shell at a height above the skin, with hairs of ordinary bends.
 // Variant of vair_shell_offset.
 //   position     vertex on the skin, in scene units; in [-1000, 1000]
@@ -3521,7 +4087,10 @@ highp vec3 vair_shell_offset_dot(highp vec3 position, highp vec3 n, highp float 
     highp vec3 along = n + height * (comb + height * force);
     return position + coat_length * height * vair_safe_normalize_dot(along, n);
 }
+#endif
 
+#ifndef VAIR_SHELL_OFFSET_NONZERO_2417CD8A
+#define VAIR_SHELL_OFFSET_NONZERO_2417CD8A
 // Position of a vertex on the shell at a height above the skin, with hairs that keep a direction.
 // Variant of vair_shell_offset.
 //   position     vertex on the skin, in scene units; in [-1000, 1000]
@@ -3544,7 +4113,10 @@ highp vec3 vair_shell_offset_nonzero(highp vec3 position, highp vec3 n, highp fl
     highp vec3 along = n + height * (comb + height * force);
     return position + coat_length * height * vair_safe_normalize_nonzero(along, n);
 }
+#endif
 
+#ifndef VAIR_SHELL_SINE_POWER_DE95E281
+#define VAIR_SHELL_SINE_POWER_DE95E281
 // Power sin(n, w)^p, accurate at every angle and for every exponent.
 //   n           hair direction; unit vector
 //   w           direction to the light, or half vector; unit vector
@@ -3566,7 +4138,10 @@ highp float vair_shell_sine_power(highp vec3 n, highp vec3 w, highp float p) {
     highp float power = exp(max(0.5 * p * log_square, -80.0));
     return (sine_square > 0.0 || p <= 0.0) ? power : 0.0;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_E0245B79
+#define VAIR_SHELL_SHADE_E0245B79
 // Reflectance of a shell by hairs that stand along the surface normal.
 //   n           surface normal, which is the hair direction; unit vector
 //   l           direction to the light; unit vector
@@ -3589,7 +4164,10 @@ highp vec3 vair_shell_shade(highp vec3 n, highp vec3 l, highp vec3 h, highp vec3
     return k_diffuse * vair_shell_sine_power(n, l, p_diffuse) + k_specular
         * vair_shell_sine_power(n, h, p_specular);
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_COSINE_AA62E4C3
+#define VAIR_SHELL_SHADE_COSINE_AA62E4C3
 // Reflectance of a shell from two cosines, for exponents of 2 and more. Variant of
 // vair_shell_shade.
 //   n           surface normal, which is the hair direction; unit vector
@@ -3615,7 +4193,10 @@ highp vec3 vair_shell_shade_cosine(highp vec3 n, highp vec3 l, highp vec3 h, hig
     highp float specular = vair_pow_one_minus(cos_h * cos_h, 0.5 * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_FROM4_86DFBCDF
+#define VAIR_SHELL_SHADE_FROM4_86DFBCDF
 // Reflectance of a shell from two cosines, for exponents of 8 and more, without logarithms. Variant
 // of vair_shell_shade.
 //   n           surface normal, which is the hair direction; unit vector
@@ -3638,7 +4219,10 @@ highp vec3 vair_shell_shade_from4(highp vec3 n, highp vec3 l, highp vec3 h, high
     highp float specular = vair_pow_one_minus_from4(cos_h * cos_h, 0.5 * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_CUBIC8_3EEADEFE
+#define VAIR_SHELL_SHADE_CUBIC8_3EEADEFE
 // Reflectance of a shell from two cosines, for exponents of 16 and more, by polynomials. Variant of
 // vair_shell_shade.
 //   n           surface normal, which is the hair direction; unit vector
@@ -3661,7 +4245,10 @@ highp vec3 vair_shell_shade_cubic8(highp vec3 n, highp vec3 l, highp vec3 h, hig
     highp float specular = vair_pow_one_minus_cubic8(cos_h * cos_h, 0.5 * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_PRINTED_4DC21740
+#define VAIR_SHELL_SHADE_PRINTED_4DC21740
 // Reflectance of a shell as the lecture prints it, with 1 - cos^(p/2) for (1 - cos^2)^(p/2). As the
 // lecture prints it; right: vair_shell_shade.
 //   n           surface normal; unit vector
@@ -3684,7 +4271,10 @@ highp vec3 vair_shell_shade_printed(highp vec3 n, highp vec3 l, highp vec3 h, hi
     highp float specular = 1.0 - vair_safe_pow(clamp(dot(n, h), -1.0, 1.0), 0.5 * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADOW_74C18950
+#define VAIR_SHELL_SHADOW_74C18950
 // Share of the light that reaches a shell through the fur above it.
 //   height      height of the shell, 0 at the skin and 1 at the top, see vair_shell_height; in [0,
 //               1]
@@ -3700,7 +4290,10 @@ highp vec3 vair_shell_shade_printed(highp vec3 n, highp vec3 l, highp vec3 h, hi
 highp float vair_shell_shadow(highp float height, highp float s_min) {
     return s_min * (1.0 - height) + height;
 }
+#endif
 
+#ifndef VAIR_PCG3D_F8990D7D
+#define VAIR_PCG3D_F8990D7D
 // Hash of three integers to three, each of which depends on all; a bijection.
 //   x           any three numbers, for instance a cell and a seed; finite
 //   returns     three times 32 well-mixed bits (the upper ones are better); (1, 2, 3) gives
@@ -3724,7 +4317,10 @@ highp uvec3 vair_pcg3d(highp uvec3 x) {
     highp uint c3 = c2 + a3 * b3;
     return uvec3(a3, b3, c3);
 }
+#endif
 
+#ifndef VAIR_SHELL_STRAND_MASK_2B012669
+#define VAIR_SHELL_STRAND_MASK_2B012669
 // Coverage of a shell texel by one conical hair per cell of a square grid, bit-exact on every
 // target.
 //   uv          texture coordinates, in [-1024, 1024]; cut to multiples of 2^-20
@@ -3765,7 +4361,10 @@ highp float vair_shell_strand_mask(highp vec2 uv, highp float height, highp floa
     highp uint from_top = ((along >> 5u) & 32767u) - (base + (((random.y >> 17u) * room) >> 15u));
     return from_left * from_left + from_top * from_top < radius * radius ? 1.0 : 0.0;
 }
+#endif
 
+#ifndef VAIR_WRAPPED_SUM_078167D7
+#define VAIR_WRAPPED_SUM_078167D7
 // Sum modulo 1 of two numbers in [0, 1).
 //   a        multiple of 2^-24 for an exact result; in [0, 0.99999994]
 //   b        multiple of 2^-24 for an exact result; in [0, 0.99999994]
@@ -3777,7 +4376,10 @@ highp float vair_wrapped_sum(highp float a, highp float b) {
     highp float d = a + (b - 1.0);
     return min(d < 0.0 ? d + 1.0 : d, 0.99999994);
 }
+#endif
 
+#ifndef VAIR_CRANLEY_PATTERSON_E545D793
+#define VAIR_CRANLEY_PATTERSON_E545D793
 // Rotation of a point on the unit torus: the same point set, decorrelated from pixel to pixel.
 //   u           point in [0, 1)^2
 //   shift       displacement in [0, 1)^2, for instance from a hash of the pixel
@@ -3792,7 +4394,10 @@ highp float vair_wrapped_sum(highp float a, highp float b) {
 highp vec2 vair_cranley_patterson(highp vec2 u, highp vec2 shift) {
     return vec2(vair_wrapped_sum(u.x, shift.x), vair_wrapped_sum(u.y, shift.y));
 }
+#endif
 
+#ifndef VAIR_EIGHTH_TURN_33231332
+#define VAIR_EIGHTH_TURN_33231332
 // Point on the unit circle up to 45 degrees on either side of the x axis.
 //   y        angle in units of pi / 4, in [-1, 1]
 //   returns  (cos(pi y / 4), sin(pi y / 4))
@@ -3807,7 +4412,10 @@ highp vec2 vair_eighth_turn(highp float y) {
         * (0.015854327 + s * (-0.00032594008 + s * 3.530338e-6)));
     return vec2(cosine, sine);
 }
+#endif
 
+#ifndef VAIR_DISK_CONCENTRIC_A4FD06FE
+#define VAIR_DISK_CONCENTRIC_A4FD06FE
 // Uniform point in the unit disc; concentric squares become concentric circles.
 //   u           pair of uniform numbers in [0, 1); in [0, 1]
 //   returns     point of length max(|2 u.x - 1|, |2 u.y - 1|), at most 1 up to rounding
@@ -3828,7 +4436,10 @@ highp vec2 vair_disk_concentric(highp vec2 u) {
     highp vec2 p = vec2(larger * direction.x, radius * direction.y);
     return along_x ? p : p.yx;
 }
+#endif
 
+#ifndef VAIR_UNIT_FLOAT_3794723F
+#define VAIR_UNIT_FLOAT_3794723F
 // Number in [0, 1) from the upper 24 of 32 bits.
 //   bits        uniform bits, for instance of vair_pcg_hash or vair_radical_inverse_base2; finite
 //   returns     (bits >> 8) 2^-24, a multiple of 2^-24, at most 1 - 2^-24
@@ -3839,7 +4450,10 @@ highp vec2 vair_disk_concentric(highp vec2 u) {
 highp float vair_unit_float(highp uint bits) {
     return float(bits >> 8u) * 5.9604645e-8;
 }
+#endif
 
+#ifndef VAIR_RADICAL_INVERSE_BASE2_0BE9899D
+#define VAIR_RADICAL_INVERSE_BASE2_0BE9899D
 // Radical inverse of an index in base 2: its 32 bits in reverse order.
 //   i           index of the point; finite
 //   returns     the reversed bits; read as a 32-bit fraction they are the van der Corput sequence,
@@ -3856,7 +4470,10 @@ highp uint vair_radical_inverse_base2(highp uint i) {
     highp uint words = ((octets & 16711935u) << 8u) | ((octets >> 8u) & 16711935u);
     return (words << 16u) | (words >> 16u);
 }
+#endif
 
+#ifndef VAIR_HAMMERSLEY_CD705FBF
+#define VAIR_HAMMERSLEY_CD705FBF
 // Point i of n of the Hammersley set in the unit square, bit-exact on every target.
 //   i           index of the point, 0 <= i < n; in [0, 1048575]
 //   n           number of points, at most 2^20; in [1, 1048576]
@@ -3883,7 +4500,10 @@ highp vec2 vair_hammersley(highp uint i, highp uint n) {
     return vec2(float(int(quotient)) * 5.9604645e-8,
         vair_unit_float(vair_radical_inverse_base2(i)));
 }
+#endif
 
+#ifndef VAIR_HEMISPHERE_COSINE_261CEA90
+#define VAIR_HEMISPHERE_COSINE_261CEA90
 // Direction of the upper hemisphere with density cos / pi.
 //   u           pair of uniform numbers in [0, 1); in [0, 1]
 //   returns     unit vector with z >= 0; the boundary of the square goes to the horizon
@@ -3899,7 +4519,10 @@ highp vec3 vair_hemisphere_cosine(highp vec2 u) {
     highp float rim = 2.0 * max(min(min(u.x, opposite.x), min(u.y, opposite.y)), 0.0);
     return vec3(vair_disk_concentric(u), sqrt(rim * (2.0 - rim)));
 }
+#endif
 
+#ifndef VAIR_PCG_HASH_DDC33479
+#define VAIR_PCG_HASH_DDC33479
 // Hash of an integer: one step of the PCG generator and its permutation (RXS-M-XS 32), a bijection.
 //   x           any number; finite
 //   returns     32 well-mixed bits; 0 gives 07bb2fe2, 1 gives a8beea3c
@@ -3912,7 +4535,10 @@ highp uint vair_pcg_hash(highp uint x) {
     highp uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return (word >> 22u) ^ word;
 }
+#endif
 
+#ifndef VAIR_R2_SEQUENCE_E601CD05
+#define VAIR_R2_SEQUENCE_E601CD05
 // Point i of the R2 sequence in the unit square, bit-exact on every target.
 //   i           index of the point; the sequence needs no length and starts at (0, 0); finite
 //   returns     both fractional parts of i / g and i / g^2, as multiples of 2^-24 in [0, 1)
@@ -3924,7 +4550,10 @@ highp uint vair_pcg_hash(highp uint x) {
 highp vec2 vair_r2_sequence(highp uint i) {
     return vec2(vair_unit_float(i * 3242174889u), vair_unit_float(i * 2447445413u));
 }
+#endif
 
+#ifndef VAIR_UNIT_CIRCLE_3FED2866
+#define VAIR_UNIT_CIRCLE_3FED2866
 // Point on the unit circle at a share of a full turn from the x axis.
 //   turns    angle as a share of a full turn, in [0, 1]
 //   returns  (cos(2 pi turns), sin(2 pi turns)); exact at quarter turns
@@ -3938,7 +4567,10 @@ highp vec2 vair_unit_circle(highp float turns) {
     highp vec2 swapped = (nearest == 1.0 || nearest == 3.0) ? vec2(-p.y, p.x) : p;
     return (nearest == 2.0 || nearest == 3.0) ? -swapped : swapped;
 }
+#endif
 
+#ifndef VAIR_SPHERE_UNIFORM_AA1A288D
+#define VAIR_SPHERE_UNIFORM_AA1A288D
 // Uniform direction on the unit sphere.
 //   u           pair of uniform numbers in [0, 1); in [0, 1]
 //   returns     unit vector with z = 1 - 2 u.x and azimuth 2 pi u.y; u.x = 0 is the pole z = 1
@@ -3950,7 +4582,10 @@ highp vec3 vair_sphere_uniform(highp vec2 u) {
     highp float radius = 2.0 * sqrt(max(u.x * (1.0 - u.x), 0.0));
     return vec3(radius * vair_unit_circle(u.y), 1.0 - 2.0 * u.x);
 }
+#endif
 
+#ifndef VAIR_HALF_SUM_A5CC80B3
+#define VAIR_HALF_SUM_A5CC80B3
 // The half vector of two directions times |l + v|, accurate even for l close to -v.
 //   l        direction to the light; unit vector
 //   v        direction to the viewer; unit vector
@@ -3966,7 +4601,10 @@ highp vec3 vair_half_sum(highp vec3 l, highp vec3 v) {
     highp vec3 g = l + v;
     return g - 0.25 * (g.x * d.x + g.y * d.y + g.z * d.z) * d;
 }
+#endif
 
+#ifndef VAIR_LOG_COSINE_SQUARED_C161E03F
+#define VAIR_LOG_COSINE_SQUARED_C161E03F
 // Natural logarithm of a squared cosine, with flat relative error as the cosine tends to 1 and to
 // 0.
 //   sine_squared    1 - c^2, computed directly; in [0, 1]
@@ -3982,7 +4620,10 @@ highp float vair_log_cosine_squared(highp float sine_squared, highp float cosine
     highp float log_far = log(max(cosine_squared, 1.2e-38));
     return sine_squared < 0.5 ? log_near : log_far;
 }
+#endif
 
+#ifndef VAIR_COSINE_POWER_21E2E0F5
+#define VAIR_COSINE_POWER_21E2E0F5
 // Power c^exponent of a cosine c >= 0, accurate as c -> 1 and as c -> 0.
 //   sine_squared    1 - c^2, computed directly; in [0, 1]
 //   cosine_squared  c^2, computed directly; in [0, 1]
@@ -3997,7 +4638,10 @@ highp float vair_cosine_power(highp float sine_squared, highp float cosine_squar
     highp float log_power = 0.5 * exponent * vair_log_cosine_squared(sine_squared, cosine_squared);
     return exp(clamp(log_power, -80.0, 0.0));
 }
+#endif
 
+#ifndef VAIR_HALF_COSINE_POWER_188D8041
+#define VAIR_HALF_COSINE_POWER_188D8041
 // Power |h.z|^exponent of the half vector h = g / |g|.
 //   g         vair_half_sum of l and v; in [-2, 2]
 //   exponent  exponent, in [0, 1e5]
@@ -4011,7 +4655,10 @@ highp float vair_half_cosine_power(highp vec3 g, highp float exponent) {
     highp float k = 1.0 / max(planar + upright, 1e-37);
     return vair_cosine_power(planar * k, upright * k, exponent);
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_POWER_38642E72
+#define VAIR_ASHIKHMIN_SHIRLEY_POWER_38642E72
 // Density of half vectors per steradian.
 //   g           vair_half_sum of l and v; in [-2, 2]
 //   exponent_x  sharpness across the tangent direction; in [0, 100000]
@@ -4029,7 +4676,10 @@ highp float vair_ashikhmin_shirley_power(highp vec3 g, highp float exponent_x,
     highp float scale = sqrt((exponent_x + 1.0) * (exponent_y + 1.0)) * 0.15915494;
     return scale * vair_half_cosine_power(g, exponent);
 }
+#endif
 
+#ifndef VAIR_HALF_JACOBIAN_A2ECB047
+#define VAIR_HALF_JACOBIAN_A2ECB047
 // Half vectors per steradian of light directions: 1 / (4 |v.h|) for l mirrored about h.
 //   g           vair_half_sum of l and v; in [-2, 2]
 //   returns     1 / (2 |g|)
@@ -4041,7 +4691,10 @@ highp float vair_half_jacobian(highp vec3 g) {
     highp float square = dot(g, g);
     return square > 1e-37 ? 0.5 * inversesqrt(max(square, 1e-37)) : 0.0;
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_PDF_7C06721D
+#define VAIR_ASHIKHMIN_SHIRLEY_PDF_7C06721D
 // Density with which vair_ashikhmin_shirley_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4066,7 +4719,10 @@ highp float vair_ashikhmin_shirley_pdf(highp vec3 l, highp vec3 v, highp float e
     highp vec3 g = vair_half_sum(l, v);
     return vair_ashikhmin_shirley_power(g, exponent_x, exponent_y) * vair_half_jacobian(g);
 }
+#endif
 
+#ifndef VAIR_POWER_DEFECT_EA464198
+#define VAIR_POWER_DEFECT_EA464198
 // Defect q = 1 - cos of the angle that a uniform number selects from the density cos^(exponent -
 // 1).
 //   u         uniform number in [0, 1); 0 is the peak
@@ -4078,7 +4734,10 @@ highp float vair_ashikhmin_shirley_pdf(highp vec3 l, highp vec3 v, highp float e
 highp float vair_power_defect(highp float u, highp float exponent) {
     return vair_one_minus_exp_neg(-vair_log_one_minus(u) / exponent);
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_SAMPLE_8DA381B7
+#define VAIR_ASHIKHMIN_SHIRLEY_SAMPLE_8DA381B7
 // Direction to the light, drawn with density vair_ashikhmin_shirley_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4105,7 +4764,10 @@ highp vec3 vair_ashikhmin_shirley_sample(highp vec2 u, highp vec3 v, highp float
     highp float k = sqrt(max(q * (2.0 - q), 0.0)) * inversesqrt(d);
     return normalize(vair_mirror(v, vec3(k * x, k * y, 1.0 - q)));
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_VALUE_8A20F0DF
+#define VAIR_ASHIKHMIN_SHIRLEY_VALUE_8A20F0DF
 // Reflectance of the Ashikhmin-Shirley highlight per steradian, without the cosine, Fresnel factor
 // 1.
 //   l           direction to the light, in the local frame; unit vector
@@ -4127,7 +4789,10 @@ highp float vair_ashikhmin_shirley_value(highp vec3 l, highp vec3 v, highp float
     highp float value = 0.5 * lobe / max(length(g) * max(l.z, v.z), 1e-20);
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_PDF_EAEDCB4D
+#define VAIR_BLINN_PHONG_PDF_EAEDCB4D
 // Density with which vair_blinn_phong_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4151,7 +4816,10 @@ highp float vair_blinn_phong_pdf(highp vec3 l, highp vec3 v, highp float exponen
     return (exponent + 1.0) * 0.15915494 * vair_half_cosine_power(g, exponent)
         * vair_half_jacobian(g);
 }
+#endif
 
+#ifndef VAIR_AROUND_AXIS_4631DF68
+#define VAIR_AROUND_AXIS_4631DF68
 // Unit vector at a given defect from the z axis.
 //   q        defect 1 - cos of the angle to the z axis; in [0, 2]
 //   turns    azimuth as a share of a full turn from the x axis; in [0, 1]
@@ -4161,7 +4829,10 @@ highp float vair_blinn_phong_pdf(highp vec3 l, highp vec3 v, highp float exponen
 highp vec3 vair_around_axis(highp float q, highp float turns) {
     return vec3(sqrt(max(q * (2.0 - q), 0.0)) * vair_unit_circle(turns), 1.0 - q);
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_SAMPLE_EB65B5E4
+#define VAIR_BLINN_PHONG_SAMPLE_EB65B5E4
 // Direction to the light, drawn with density vair_blinn_phong_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4176,7 +4847,10 @@ highp vec3 vair_blinn_phong_sample(highp vec2 u, highp vec3 v, highp float expon
     highp vec3 h = vair_around_axis(vair_power_defect(u.x, exponent + 1.0), u.y);
     return normalize(vair_mirror(v, h));
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_SCALE_52C6735F
+#define VAIR_BLINN_PHONG_SCALE_52C6735F
 // Height of the Blinn-Phong lobe that gives it albedo 1 at normal incidence.
 //   exponent  p, sharpness of the lobe; in [0, 100000]
 //   returns   (p + 2) (p + 4) / (8 pi (2^(-p/2) + p)); 1 / pi at p = 0
@@ -4186,7 +4860,10 @@ highp float vair_blinn_phong_scale(highp float exponent) {
     highp float falloff = exp(max(-0.3465736 * exponent, -80.0));
     return 0.039788734 * (exponent + 2.0) * ((exponent + 4.0) / (falloff + exponent));
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_VALUE_DDF559FD
+#define VAIR_BLINN_PHONG_VALUE_DDF559FD
 // Reflectance of the Blinn-Phong lobe per steradian, without the cosine, Fresnel factor 1.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4203,7 +4880,10 @@ highp float vair_blinn_phong_value(highp vec3 l, highp vec3 v, highp float expon
         * vair_half_cosine_power(vair_half_sum(l, v), exponent);
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_GGX_DISTRIBUTION_8A28977D
+#define VAIR_GGX_DISTRIBUTION_8A28977D
 // Density D(h) of microfacet normals, area per projected area and steradian.
 //   g           vair_half_sum of l and v; h = g / |g|; in [-2, 2]
 //   alpha_x     width along the tangent; in [0.0001, 1]
@@ -4220,7 +4900,10 @@ highp float vair_ggx_distribution(highp vec3 g, highp float alpha_x, highp float
     highp float ratio = min(dot(g, g) / max(x * x + y * y + g.z * g.z, 1e-37), 1.0);
     return 0.31830987 / (alpha_x * alpha_y) * (ratio * ratio);
 }
+#endif
 
+#ifndef VAIR_GGX_STRETCH_C5FA6F68
+#define VAIR_GGX_STRETCH_C5FA6F68
 // Length of (alpha_x w.x, alpha_y w.y, w.z), from which all masking terms follow.
 //   w        direction, in the local frame; unit vector
 //   alpha_x  width along the tangent; in [0.0001, 1]
@@ -4232,7 +4915,10 @@ highp float vair_ggx_distribution(highp vec3 g, highp float alpha_x, highp float
 highp float vair_ggx_stretch(highp vec3 w, highp float alpha_x, highp float alpha_y) {
     return length(vec3(alpha_x * w.x, alpha_y * w.y, w.z));
 }
+#endif
 
+#ifndef VAIR_GGX_VISIBLE_AREA_02E975DF
+#define VAIR_GGX_VISIBLE_AREA_02E975DF
 // Twice the projected area of the facets that face a direction, per area of the surface.
 //   w        direction, in the local frame; also from below; unit vector
 //   alpha_x  width along the tangent; in [0.0001, 1]
@@ -4248,7 +4934,10 @@ highp float vair_ggx_visible_area(highp vec3 w, highp float alpha_x, highp float
     highp float below = (x * x + y * y) / (s + max(-w.z, 0.0));
     return max(w.z >= 0.0 ? w.z + s : below, 1e-20);
 }
+#endif
 
+#ifndef VAIR_GGX_PDF_B01AA371
+#define VAIR_GGX_PDF_B01AA371
 // Density with which vair_ggx_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4271,7 +4960,10 @@ highp float vair_ggx_pdf(highp vec3 l, highp vec3 v, highp float alpha_x, highp 
         / vair_ggx_visible_area(v, alpha_x, alpha_y);
     return g.z > 0.0 ? pdf : 0.0;
 }
+#endif
 
+#ifndef VAIR_GGX_SAMPLE_DC73435C
+#define VAIR_GGX_SAMPLE_DC73435C
 // Direction to the light, drawn with density vair_ggx_pdf: v mirrored about a visible normal.
 //   u           pair of uniform numbers in [0, 1); u.y = 0 is the middle of the visible normals
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4305,7 +4997,10 @@ highp vec3 vair_ggx_sample(highp vec2 u, highp vec3 v, highp float alpha_x, high
     highp vec3 r = vair_mirror(v, h);
     return (1.5 - 0.5 * dot(r, r)) * r;
 }
+#endif
 
+#ifndef VAIR_GGX_VALUE_46F5C58B
+#define VAIR_GGX_VALUE_46F5C58B
 // Reflectance of the anisotropic GGX lobe per steradian, without the cosine, Fresnel factor 1.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4330,7 +5025,10 @@ highp float vair_ggx_value(highp vec3 l, highp vec3 v, highp float alpha_x, high
         / max(mask, 1e-20);
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_LAMBERT_PDF_95174F1E
+#define VAIR_LAMBERT_PDF_95174F1E
 // Density with which vair_lambert_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; without influence; unit vector
@@ -4342,7 +5040,10 @@ highp float vair_ggx_value(highp vec3 l, highp vec3 v, highp float alpha_x, high
 highp float vair_lambert_pdf(highp vec3 l, highp vec3 v) {
     return 0.31830987 * max(l.z, 0.0);
 }
+#endif
 
+#ifndef VAIR_LAMBERT_SAMPLE_2990E136
+#define VAIR_LAMBERT_SAMPLE_2990E136
 // Direction to the light, drawn with density vair_lambert_pdf.
 //   u           pair of uniform numbers in [0, 1)
 //   v           direction to the viewer, in the local frame; without influence; unit vector
@@ -4358,7 +5059,10 @@ highp vec3 vair_lambert_sample(highp vec2 u, highp vec3 v) {
     highp vec3 w = vair_hemisphere_cosine(u);
     return w.z > 0.0 ? w : vec3(0.0, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_LAMBERT_VALUE_D7C4705B
+#define VAIR_LAMBERT_VALUE_D7C4705B
 // Reflectance of a white Lambert surface per steradian, without the cosine.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4370,7 +5074,10 @@ highp vec3 vair_lambert_sample(highp vec2 u, highp vec3 v) {
 highp float vair_lambert_value(highp vec3 l, highp vec3 v) {
     return (l.z > 0.0 && v.z > 0.0) ? 0.31830987 : 0.0;
 }
+#endif
 
+#ifndef VAIR_PHONG_POWER_DDEED95A
+#define VAIR_PHONG_POWER_DDEED95A
 // Power max(0, l.r)^exponent around the mirror direction r = (-v.x, -v.y, v.z).
 //   l         direction to the light, in the local frame; unit vector
 //   v         direction to the viewer, in the local frame; unit vector
@@ -4384,7 +5091,10 @@ highp float vair_phong_power(highp vec3 l, highp vec3 v, highp float exponent) {
     highp float q = min(0.5 * dot(d, d), 2.0);
     return q < 1.0 ? vair_pow_one_minus(q, exponent) : 0.0;
 }
+#endif
 
+#ifndef VAIR_PHONG_PDF_4ED2F7AA
+#define VAIR_PHONG_PDF_4ED2F7AA
 // Density with which vair_phong_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4402,7 +5112,10 @@ highp float vair_phong_power(highp vec3 l, highp vec3 v, highp float exponent) {
 highp float vair_phong_pdf(highp vec3 l, highp vec3 v, highp float exponent) {
     return (exponent + 1.0) * 0.15915494 * vair_phong_power(l, v, exponent);
 }
+#endif
 
+#ifndef VAIR_PHONG_SAMPLE_A2CC88EE
+#define VAIR_PHONG_SAMPLE_A2CC88EE
 // Direction to the light, drawn with density vair_phong_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4420,7 +5133,10 @@ highp vec3 vair_phong_sample(highp vec2 u, highp vec3 v, highp float exponent) {
     vair_Frame frame = vair_frame_from_normal(vec3(-v.x, -v.y, v.z));
     return normalize(vair_to_world(frame, vair_around_axis(q, u.y)));
 }
+#endif
 
+#ifndef VAIR_PHONG_VALUE_174D725D
+#define VAIR_PHONG_VALUE_174D725D
 // Reflectance of the modified Phong lobe per steradian, without the cosine, Fresnel factor 1.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4441,7 +5157,10 @@ highp float vair_phong_value(highp vec3 l, highp vec3 v, highp float exponent) {
     highp float value = (exponent + 2.0) * 0.15915494 * vair_phong_power(l, v, exponent);
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_ARC_NORMAL_A1C0A868
+#define VAIR_ARC_NORMAL_A1C0A868
 // Cosine and sine of an angle in radians.
 //   xi       angle, in [-pi, pi]; in [-3.2, 3.2]
 //   returns  (cos(xi), sin(xi))
@@ -4452,7 +5171,10 @@ highp vec2 vair_arc_normal(highp float xi) {
     highp vec2 p = vair_unit_circle(abs(xi) * 0.15915494);
     return vec2(p.x, xi < 0.0 ? -p.y : p.y);
 }
+#endif
 
+#ifndef VAIR_SATIN_FACET_DENSITY_F9A6DEA1
+#define VAIR_SATIN_FACET_DENSITY_F9A6DEA1
 // Density per steradian of half vectors on a row of cylinders along x.
 //   g         vair_half_sum of l and v; h = g / |g|, turned up; in [-2, 2]
 //   spread    half angle of each arc, in radians; in [0.001, 1.57079637]
@@ -4476,7 +5198,10 @@ highp float vair_satin_facet_density(highp vec3 g, highp float spread, highp flo
     highp float density = 0.125 * m * power * sqrt(quotient) / spread;
     return abs(g.y) * edge.x < abs(g.z) * edge.y ? density : 0.0;
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_PDF_0EB8C4D0
+#define VAIR_POULIN_FOURNIER_PDF_0EB8C4D0
 // Density with which vair_poulin_fournier_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4497,7 +5222,10 @@ highp float vair_poulin_fournier_pdf(highp vec3 l, highp vec3 v, highp float spr
     highp float facets = vair_satin_facet_density(g, spread, exponent) * vair_half_jacobian(g);
     return (1.0 - specular) * (0.31830987 * max(l.z, 0.0)) + specular * facets;
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_SAMPLE_4D14339F
+#define VAIR_POULIN_FOURNIER_SAMPLE_4D14339F
 // Direction to the light, drawn with density vair_poulin_fournier_pdf.
 //   u           pair of uniform numbers in [0, 1); u.x < 1 - specular is the diffuse part
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4528,7 +5256,10 @@ highp vec3 vair_poulin_fournier_sample(highp vec2 u, highp vec3 v, highp float s
     highp vec3 h = vec3(y >= 0.0 ? s : -s, (1.0 - q) * n.y, (1.0 - q) * n.x);
     return u.x < diffuse_share ? diffuse : normalize(vair_mirror(v, h));
 }
+#endif
 
+#ifndef VAIR_SATIN_VISIBLE_000C5562
+#define VAIR_SATIN_VISIBLE_000C5562
 // Interval of the arc coordinate xi, the angle of the arc's normal from z, that a direction sees.
 //   w        direction above the surface, in the local frame; cylinders along x; unit vector
 //   spread   half angle of each arc, in radians; in [0.001, 1.57079637]
@@ -4552,7 +5283,10 @@ highp vec2 vair_satin_visible(highp vec3 w, highp float spread, highp vec2 edge)
     highp float upper = psi < spread ? min(eta - psi, spread) : spread;
     return w.y < 0.0 ? vec2(-upper, -lower) : vec2(lower, upper);
 }
+#endif
 
+#ifndef VAIR_SATIN_HIGHLIGHT_RANGE_F28C5260
+#define VAIR_SATIN_HIGHLIGHT_RANGE_F28C5260
 // Middle and half width of the interval over which the highlight is integrated.
 //   g           vair_half_sum of l and v, with g.z > 0; in [-2, 2]
 //   visible     interval of the arc coordinate that l and v both see; in [-1.6, 1.6]
@@ -4571,7 +5305,10 @@ highp vec2 vair_satin_highlight_range(highp vec3 g, highp vec2 visible, highp fl
     highp float upper = min(visible.y, peak + reach);
     return vec2(0.5 * (lower + upper), 0.5 * max(upper - lower, 0.0));
 }
+#endif
 
+#ifndef VAIR_SATIN_NODE_7A24E982
+#define VAIR_SATIN_NODE_7A24E982
 // Integrand (N.l) (N.v) (N.h)^exponent at one point of the arc, N = (0, sin xi, cos xi).
 //   xi        arc coordinate, in radians; in [-1.6, 1.6]
 //   l         direction to the light, in the local frame; unit vector
@@ -4591,7 +5328,10 @@ highp float vair_satin_node(highp float xi, highp vec3 l, highp vec3 v, highp ve
     return facing * vair_cosine_power(min(h.x * h.x + across * across, 1.0), upright * upright,
         exponent);
 }
+#endif
 
+#ifndef VAIR_SATIN_PAIR_F48EE3D8
+#define VAIR_SATIN_PAIR_F48EE3D8
 // Sum of vair_satin_node at two points of the arc.
 //   middle    arc coordinate halfway between the points, in radians; in [-1.6, 1.6]
 //   offset    distance of each from the middle; in [0, 1.6]
@@ -4607,7 +5347,10 @@ highp float vair_satin_pair(highp float middle, highp float offset, highp vec3 l
     return vair_satin_node(middle - offset, l, v, h, exponent)
         + vair_satin_node(middle + offset, l, v, h, exponent);
 }
+#endif
 
+#ifndef VAIR_SATIN_HIGHLIGHT_132ACA8E
+#define VAIR_SATIN_HIGHLIGHT_132ACA8E
 // Integral of (N.l) (N.v) (N.h)^exponent over the arc that l and v both see, by 12 nodes.
 //   l         direction to the light, in the local frame; unit vector
 //   v         direction to the viewer, in the local frame; unit vector
@@ -4632,7 +5375,10 @@ highp float vair_satin_highlight(highp vec3 l, highp vec3 v, highp vec2 visible,
     total = total + 0.047175337 * vair_satin_pair(x, 0.98156065 * r, l, v, h, exponent);
     return r * total;
 }
+#endif
 
+#ifndef VAIR_SATIN_DIFFUSE_DFB0B908
+#define VAIR_SATIN_DIFFUSE_DFB0B908
 // Reflectance per steradian of white Lambert cylinders along x.
 //   l        direction to the light, in the local frame; unit vector
 //   v        direction to the viewer, in the local frame; unit vector
@@ -4659,7 +5405,10 @@ highp float vair_satin_diffuse(highp vec3 l, highp vec3 v, highp vec2 visible, h
     highp float total = 0.5 * (along * (x + sine) + across * difference);
     return 0.31830987 * max(total, 0.0) / max(pitch * l.z * v.z, 1e-37);
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_VALUE_B3A16D0D
+#define VAIR_POULIN_FOURNIER_VALUE_B3A16D0D
 // Reflectance of satin per steradian, without the cosine: parallel cylinders along x, one bounce.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4701,7 +5450,10 @@ highp float vair_poulin_fournier_value(highp vec3 l, highp vec3 v, highp float s
         + specular * highlight;
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_SATIN_HIGHLIGHT_EIGHT_405402FC
+#define VAIR_SATIN_HIGHLIGHT_EIGHT_405402FC
 // Integral of (N.l) (N.v) (N.h)^exponent over the arc that l and v both see, by 8 nodes.
 //   l         direction to the light, in the local frame; unit vector
 //   v         direction to the viewer, in the local frame; unit vector
@@ -4724,7 +5476,10 @@ highp float vair_satin_highlight_eight(highp vec3 l, highp vec3 v, highp vec2 vi
     total = total + 0.101228535 * vair_satin_pair(x, 0.96028984 * r, l, v, h, exponent);
     return r * total;
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_VALUE_EIGHT_B84C9B21
+#define VAIR_POULIN_FOURNIER_VALUE_EIGHT_B84C9B21
 // Reflectance of satin per steradian with a coarser highlight: 8 nodes instead of 12. Variant of
 // vair_poulin_fournier_value.
 //   l           direction to the light, in the local frame; unit vector
@@ -4757,7 +5512,10 @@ highp float vair_poulin_fournier_value_eight(highp vec3 l, highp vec3 v, highp f
         + specular * highlight;
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_PUNCTUAL_RADIANCE_1E28EB9D
+#define VAIR_PUNCTUAL_RADIANCE_1E28EB9D
 // Radiance that a surface reflects from a point or directional light.
 //   brdf        reflectance of the surface per steradian, as the value functions of lobes return
 //               it; in [0, 100000000]
@@ -4773,7 +5531,10 @@ highp float vair_poulin_fournier_value_eight(highp vec3 l, highp vec3 v, highp f
 highp vec3 vair_punctual_radiance(highp vec3 brdf, highp vec3 light, highp float n_dot_l) {
     return 3.1415927 * max(n_dot_l, 0.0) * (brdf * light);
 }
+#endif
 
+#ifndef VAIR_STRAND_LOBE_DEFECT_66A4B2BD
+#define VAIR_STRAND_LOBE_DEFECT_66A4B2BD
 // Defect 1 - cos(delta) of the angle delta by which l misses the cone of mirror directions around
 // x.
 //   l        direction to the light, in the local frame; unit vector
@@ -4788,7 +5549,10 @@ highp float vair_strand_lobe_defect(highp vec3 l, highp vec3 v) {
     highp float along = l.x + v.x;
     return min(0.5 * (difference * difference + along * along), 2.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_MIXTURE_EB0D73E9
+#define VAIR_STRAND_MIXTURE_EB0D73E9
 // Shares of the two densities of delta that vair_strand_sample mixes.
 //   v         direction to the viewer, in the local frame; unit vector
 //   exponent  p, sharpness of the lobe; in [0, 100000]
@@ -4805,7 +5569,10 @@ highp vec2 vair_strand_mixture(highp vec3 v, highp float exponent) {
     highp float k = 1.0 / (bell + lobe);
     return vec2(lobe * k, bell * k);
 }
+#endif
 
+#ifndef VAIR_STRAND_PDF_87577C09
+#define VAIR_STRAND_PDF_87577C09
 // Density with which vair_strand_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4841,7 +5608,10 @@ highp float vair_strand_pdf(highp vec3 l, highp vec3 v, highp float exponent) {
     highp float pdf = 0.15915494 * m * vair_pow_one_minus(q, exponent) * shape;
     return q < 0.99999994 ? pdf : 0.0;
 }
+#endif
 
+#ifndef VAIR_STRAND_SAMPLE_E7F5B9EF
+#define VAIR_STRAND_SAMPLE_E7F5B9EF
 // Direction to the light, drawn with density vair_strand_pdf: near the cone of mirror directions
 // around x.
 //   u           pair of uniform numbers in [0, 1); u.x = 0 is on the cone
@@ -4880,7 +5650,10 @@ highp vec3 vair_strand_sample(highp vec2 u, highp vec3 v, highp float exponent) 
     highp float elevation = (take_raised ? s : -s) * from_axis - c * v.x;
     return normalize(vec3(elevation, (take_raised ? raised : lowered) * vair_unit_circle(turns)));
 }
+#endif
 
+#ifndef VAIR_STRAND_VALUE_50C3A5BC
+#define VAIR_STRAND_VALUE_50C3A5BC
 // Highlight of a strand along x, on the whole sphere of l and v; not normalised.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4901,7 +5674,10 @@ highp float vair_strand_value(highp vec3 l, highp vec3 v, highp float exponent) 
     highp float q = vair_strand_lobe_defect(l, v);
     return q < 1.0 ? vair_pow_one_minus(q, exponent) : 0.0;
 }
+#endif
 
+#ifndef VAIR_WARD_PDF_F0CAD93E
+#define VAIR_WARD_PDF_F0CAD93E
 // Density with which vair_ward_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4930,7 +5706,10 @@ highp float vair_ward_pdf(highp vec3 l, highp vec3 v, highp float alpha_x, highp
     highp float pdf = bell * (0.15915494 / (alpha_x * alpha_y)) / max(abs(g.z), 1e-18);
     return stretched < 80.0 * upright ? pdf : 0.0;
 }
+#endif
 
+#ifndef VAIR_WARD_SAMPLE_618D7265
+#define VAIR_WARD_SAMPLE_618D7265
 // Direction to the light, drawn with density vair_ward_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4950,7 +5729,10 @@ highp vec3 vair_ward_sample(highp vec2 u, highp vec3 v, highp float alpha_x, hig
     highp vec3 h = normalize(vec3(alpha_x * radius * circle.x, alpha_y * radius * circle.y, 1.0));
     return normalize(vair_mirror(v, h));
 }
+#endif
 
+#ifndef VAIR_WARD_VALUE_CF6B499E
+#define VAIR_WARD_VALUE_CF6B499E
 // Reflectance of the Ward lobe with bounded albedo per steradian, without the cosine, Fresnel
 // factor 1.
 //   l           direction to the light, in the local frame; unit vector
@@ -4982,7 +5764,10 @@ highp float vair_ward_value(highp vec3 l, highp vec3 v, highp float alpha_x, hig
     highp float value = bell * (0.31830987 / (alpha_x * alpha_y)) / max(planar + upright, 1e-20);
     return (l.z > 0.0 && v.z > 0.0 && stretched < 80.0 * upright) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_CUBE_SOLID_ANGLE_25A8122D
+#define VAIR_CUBE_SOLID_ANGLE_25A8122D
 // Solid angle of the texel centred at a point of one face of a cube map.
 //   uv          texture coordinates of the texel's centre on its face; in [0, 1]
 //   size        texels along each side of the face; in [1, 65536]
@@ -4997,7 +5782,10 @@ highp float vair_cube_solid_angle(highp vec2 uv, highp float size) {
     highp float side = 2.0 / size;
     return side * side * (r * r * r);
 }
+#endif
 
+#ifndef VAIR_DUAL_PARABOLOID_DIRECTION_580CB53B
+#define VAIR_DUAL_PARABOLOID_DIRECTION_580CB53B
 // Direction of a point of a dual-paraboloid map; undoes vair_dual_paraboloid_uv.
 //   uv          texture coordinates; in [0, 1]
 //   back        above 1/2: the half around -z; otherwise the half around +z; in [0, 1]
@@ -5015,7 +5803,10 @@ highp vec3 vair_dual_paraboloid_direction(highp vec2 uv, highp float back, highp
     highp float z = (1.0 - square) * k;
     return vec3(2.0 * k * s, back > 0.5 ? -z : z);
 }
+#endif
 
+#ifndef VAIR_DUAL_PARABOLOID_SOLID_ANGLE_408D5F7B
+#define VAIR_DUAL_PARABOLOID_SOLID_ANGLE_408D5F7B
 // Solid angle of the texel that a direction falls into, for choosing its mip level.
 //   z           component w.z of the direction looked up; in [-1, 1]
 //   width       texels of one half along u; in [1, 65536]
@@ -5035,7 +5826,10 @@ highp float vair_dual_paraboloid_solid_angle(highp float z, highp float width, h
     highp float scale = 2.0 * border * depth;
     return scale / width * (scale / height);
 }
+#endif
 
+#ifndef VAIR_DUAL_PARABOLOID_UV_231A148D
+#define VAIR_DUAL_PARABOLOID_UV_231A148D
 // Place of a direction in a dual-paraboloid map: two discs, around +z and around -z.
 //   w           direction; unit vector
 //   border      half side of each square in units of the disc radius, at least 1; 1.2 leaves a rim
@@ -5053,7 +5847,10 @@ vair_DualParaboloid vair_dual_paraboloid_uv(highp vec3 w, highp float border) {
     highp vec2 uv = clamp(k * w.xy + vec2(0.5), vec2(0.0), vec2(1.0));
     return vair_DualParaboloid(uv, w.z < 0.0 ? 1.0 : 0.0);
 }
+#endif
 
+#ifndef VAIR_LATLONG_UV_136A3364
+#define VAIR_LATLONG_UV_136A3364
 // Texture coordinates of a direction in a latitude-longitude map with y up.
 //   w           direction; unit vector
 //   returns     (1/2 + atan2(w.x, -w.z) / (2 pi), atan2(length(w.xz), w.y) / pi), in [0, 1]^2: v =
@@ -5068,7 +5865,10 @@ vair_DualParaboloid vair_dual_paraboloid_uv(highp vec3 w, highp float border) {
 highp vec2 vair_latlong_uv(highp vec3 w) {
     return vec2(0.5 + vair_turn_of(w.x, -w.z), 2.0 * vair_turn_of(length(vec2(w.x, w.z)), w.y));
 }
+#endif
 
+#ifndef VAIR_ENVIRONMENT_LATLONG_E2CFF845
+#define VAIR_ENVIRONMENT_LATLONG_E2CFF845
 // Light that comes from a direction, from a latitude-longitude map with its levels.
 //   environment  the map, linear RGB, in the layout of vair_latlong_uv; linear filter within and
 //                between levels; repeat in u, clamp in v
@@ -5086,7 +5886,10 @@ highp vec2 vair_latlong_uv(highp vec3 w) {
 highp vec3 vair_environment_latlong(highp sampler2D environment, highp vec3 w, highp float lod) {
     return textureLod(environment, vair_latlong_uv(w), lod).xyz;
 }
+#endif
 
+#ifndef VAIR_LATLONG_DIRECTION_E5FF27EF
+#define VAIR_LATLONG_DIRECTION_E5FF27EF
 // Direction of a point of a latitude-longitude map with y up; undoes vair_latlong_uv.
 //   uv          texture coordinates: v from the top, u = 1/2 toward -z and growing toward +x; in
 //               [0, 1]
@@ -5101,7 +5904,10 @@ highp vec3 vair_latlong_direction(highp vec2 uv) {
     highp vec2 azimuth = vair_unit_circle(uv.x);
     return vec3(-polar.y * azimuth.y, polar.x, polar.y * azimuth.x);
 }
+#endif
 
+#ifndef VAIR_LATLONG_SOLID_ANGLE_2BE517CE
+#define VAIR_LATLONG_SOLID_ANGLE_2BE517CE
 // Solid angle of the texel centred at height v of a latitude-longitude map.
 //   v           texture coordinate of the texel's centre, from the top; in [0, 1]
 //   width       texels along u; in [1, 65536]
@@ -5118,7 +5924,10 @@ highp vec3 vair_latlong_direction(highp vec2 uv) {
 highp float vair_latlong_solid_angle(highp float v, highp float width, highp float height) {
     return 12.566371 / width * vair_unit_circle(0.5 * v).y * vair_unit_circle(0.25 / height).y;
 }
+#endif
 
+#ifndef VAIR_LOD_FROM_PDF_43CF011D
+#define VAIR_LOD_FROM_PDF_43CF011D
 // Mip level whose texels cover as much as one sample stands for.
 //   pdf                density of the sample per steradian; in [0, 1e20]
 //   samples            number of samples drawn; in [1, 1000000]
@@ -5138,7 +5947,10 @@ highp float vair_lod_from_pdf(highp float pdf, highp float samples, highp float 
     highp float ratio = samples * pdf * texel_solid_angle;
     return max(lod_bias - 0.5 * log2(max(ratio, 1e-30)), 0.0);
 }
+#endif
 
+#ifndef VAIR_MIS_BALANCE_E11DBBA9
+#define VAIR_MIS_BALANCE_E11DBBA9
 // Weight of a sample of technique a when techniques a and b are combined, by the balance heuristic.
 //   samples_a   samples drawn by technique a; in [1, 1000000]
 //   pdf_a       density of technique a at the sample, per steradian; in [0, 1e20]
@@ -5160,7 +5972,10 @@ highp float vair_mis_balance(highp float samples_a, highp float pdf_a, highp flo
     highp float b = samples_b * pdf_b;
     return a / max(a + b, 1.2e-38);
 }
+#endif
 
+#ifndef VAIR_MIS_POWER_BA9BB2D1
+#define VAIR_MIS_POWER_BA9BB2D1
 // Weight of a sample of technique a when techniques a and b are combined, by the power heuristic.
 //   samples_a   samples drawn by technique a; in [1, 1000000]
 //   pdf_a       density of technique a at the sample, per steradian; in [0, 1e20]
@@ -5183,7 +5998,10 @@ highp float vair_mis_power(highp float samples_a, highp float pdf_a, highp float
     highp float square_a = share_a * share_a;
     return square_a / max(square_a + share_b * share_b, 1.2e-38);
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_FOLD_46632C90
+#define VAIR_OCTAHEDRAL_FOLD_46632C90
 // Move both coordinates away from 0 by an amount.
 //   p        point of the octahedral square, or w.xy; in [-1, 1]
 //   amount   distance, negative toward 0; in [-1, 1]
@@ -5193,7 +6011,10 @@ highp float vair_mis_power(highp float samples_a, highp float pdf_a, highp float
 highp vec2 vair_octahedral_fold(highp vec2 p, highp float amount) {
     return p + vec2(p.x >= 0.0 ? amount : -amount, p.y >= 0.0 ? amount : -amount);
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_DECODE_C8212ED3
+#define VAIR_OCTAHEDRAL_DECODE_C8212ED3
 // Direction of a point of an octahedral map; undoes vair_octahedral_encode.
 //   uv          texture coordinates; opposite points of an edge of the square mean one direction;
 //               in [0, 1]
@@ -5210,7 +6031,10 @@ highp vec3 vair_octahedral_decode(highp vec2 uv) {
     highp float z = 1.0 - abs(p.x) - abs(p.y);
     return normalize(vec3(vair_octahedral_fold(p, -max(-z, 0.0)), z));
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_ENCODE_75C79A67
+#define VAIR_OCTAHEDRAL_ENCODE_75C79A67
 // Texture coordinates of a direction in an octahedral map.
 //   w           direction; unit vector
 //   returns     point of [0, 1]^2; w = (0, 0, 1) is the centre, (0, 0, -1) the corner (1, 1)
@@ -5227,7 +6051,10 @@ highp vec2 vair_octahedral_encode(highp vec3 w) {
     highp float k = 0.5 / (abs(w.x) + abs(w.y) + abs(w.z));
     return clamp(k * p + vec2(0.5), vec2(0.0), vec2(1.0));
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_SOLID_ANGLE_CC8E40FB
+#define VAIR_OCTAHEDRAL_SOLID_ANGLE_CC8E40FB
 // Solid angle of the texel centred at a point of an octahedral map.
 //   uv          texture coordinates of the texel's centre; in [0, 1]
 //   size        texels along each side; in [1, 65536]
@@ -5246,7 +6073,10 @@ highp float vair_octahedral_solid_angle(highp vec2 uv, highp float size) {
     highp float side = 2.0 / size;
     return side * side * (r * r * r);
 }
+#endif
 
+#ifndef VAIR_PARABOLIC_DIRECTION_3D1F8A02
+#define VAIR_PARABOLIC_DIRECTION_3D1F8A02
 // Direction of a point of a paraboloid map around +z; undoes vair_parabolic_uv.
 //   uv          texture coordinates; points outside the disc of radius 1/2 around (1/2, 1/2) look
 //               down; in [-1000, 1000]
@@ -5261,7 +6091,10 @@ highp vec3 vair_parabolic_direction(highp vec2 uv) {
     highp float k = 1.0 / (1.0 + square);
     return vec3(2.0 * k * s, (1.0 - square) * k);
 }
+#endif
 
+#ifndef VAIR_PARABOLIC_UV_7B42DB2F
+#define VAIR_PARABOLIC_UV_7B42DB2F
 // Texture coordinates of a direction in a paraboloid map around +z.
 //   w           direction; unit vector
 //   returns     w.xy / (2 (1 + w.z)) + 1/2; the half w.z >= 0 fills the disc around (1/2, 1/2) of
@@ -5278,7 +6111,10 @@ highp vec2 vair_parabolic_uv(highp vec3 w) {
     highp float depth = w.z >= 0.0 ? 1.0 + w.z : below;
     return 0.5 / max(depth, 1e-6) * w.xy + vec2(0.5);
 }
+#endif
 
+#ifndef VAIR_ENV_LOD_0995F3C0
+#define VAIR_ENV_LOD_0995F3C0
 // Level of a dual-paraboloid map whose texels are as large as what one sample stands for.
 //   env      the map; linear filter within and between levels; clamp in u, clamp in v
 //   w        direction of the sample; unit vector
@@ -5292,7 +6128,10 @@ highp float vair_env_lod(highp sampler2D env, highp vec3 w, highp float pdf, hig
     return vair_lod_from_pdf(pdf, samples, vair_dual_paraboloid_solid_angle(w.z, size, size, 1.2),
         0.0);
 }
+#endif
 
+#ifndef VAIR_ENV_DISC_92EB2D3E
+#define VAIR_ENV_DISC_92EB2D3E
 // Light at a place of one disc of a dual-paraboloid map, in one of its levels.
 //   env      the map; linear filter within and between levels; clamp in u, clamp in v
 //   disc     place in units of the disc radius; beyond 1 it lies in the border; in [-1.2, 1.2]
@@ -5310,7 +6149,10 @@ highp vec3 vair_env_disc(highp sampler2D env, highp vec2 disc, highp float back,
     highp vec2 place = clamp(0.41666666 * disc + vec2(0.5), vec2(margin), vec2(1.0 - margin));
     return textureLod(env, vec2(0.5 * (place.x + back), place.y), float(mip)).xyz;
 }
+#endif
 
+#ifndef VAIR_ENV_LEVEL_57C2DA8E
+#define VAIR_ENV_LEVEL_57C2DA8E
 // Light that comes from a direction, from one level of a dual-paraboloid map.
 //   env      the map; linear filter within and between levels; clamp in u, clamp in v
 //   w        direction that the light comes from; unit vector
@@ -5334,7 +6176,10 @@ highp vec3 vair_env_level(highp sampler2D env, highp vec3 w, highp uint mip) {
     highp float share = 0.5 + 0.5 * height / reach;
     return share * own + (1.0 - share) * other;
 }
+#endif
 
+#ifndef VAIR_ENV_RADIANCE_41E62C98
+#define VAIR_ENV_RADIANCE_41E62C98
 // Light that comes from a direction, from a dual-paraboloid map with its levels, as `vair env`
 // writes it.
 //   env         2 n by n texels, n a power of two: the disc around +z left, the disc around -z
@@ -5359,7 +6204,10 @@ highp vec3 vair_env_radiance(highp sampler2D env, highp vec3 w, highp float lod)
     return (1.0 - share) * vair_env_level(env, w, larger) + share
         * vair_env_level(env, w, larger + 1u);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_ASHIKHMIN_SHIRLEY_5182B0B9
+#define VAIR_ENV_GRID_ASHIKHMIN_SHIRLEY_5182B0B9
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, from a fixed grid of
 // directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
@@ -5405,7 +6253,10 @@ highp vec3 vair_env_grid_ashikhmin_shirley(highp sampler2D env, vair_Frame frame
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_ASHIKHMIN_SHIRLEY_2F4F08AA
+#define VAIR_ENV_MONTE_CARLO_ASHIKHMIN_SHIRLEY_2F4F08AA
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5443,7 +6294,10 @@ highp vec3 vair_env_monte_carlo_ashikhmin_shirley(highp sampler2D env, vair_Fram
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_ASHIKHMIN_SHIRLEY_505ECBE3
+#define VAIR_ENV_FILTERED_ASHIKHMIN_SHIRLEY_505ECBE3
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, by filtered importance
 // sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
@@ -5484,7 +6338,10 @@ highp vec3 vair_env_filtered_ashikhmin_shirley(highp sampler2D env, vair_Frame f
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_ASHIKHMIN_SHIRLEY_8F55946B
+#define VAIR_ENV_GUARDED_ASHIKHMIN_SHIRLEY_8F55946B
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, filtered only where that
 // helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
@@ -5529,7 +6386,10 @@ highp vec3 vair_env_guarded_ashikhmin_shirley(highp sampler2D env, vair_Frame fr
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_BLINN_PHONG_EFA23CDA
+#define VAIR_ENV_GRID_BLINN_PHONG_EFA23CDA
 // Light that a Blinn-Phong lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5573,7 +6433,10 @@ highp vec3 vair_env_grid_blinn_phong(highp sampler2D env, vair_Frame frame, high
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_BLINN_PHONG_45B9BD40
+#define VAIR_ENV_MONTE_CARLO_BLINN_PHONG_45B9BD40
 // Light that a Blinn-Phong lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5608,7 +6471,10 @@ highp vec3 vair_env_monte_carlo_blinn_phong(highp sampler2D env, vair_Frame fram
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_BLINN_PHONG_F764783A
+#define VAIR_ENV_FILTERED_BLINN_PHONG_F764783A
 // Light that a Blinn-Phong lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5646,7 +6512,10 @@ highp vec3 vair_env_filtered_blinn_phong(highp sampler2D env, vair_Frame frame, 
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_BLINN_PHONG_F1E7AF4F
+#define VAIR_ENV_GUARDED_BLINN_PHONG_F1E7AF4F
 // Light that a Blinn-Phong lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5688,7 +6557,10 @@ highp vec3 vair_env_guarded_blinn_phong(highp sampler2D env, vair_Frame frame, h
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_GGX_9F7E8837
+#define VAIR_ENV_GRID_GGX_9F7E8837
 // Light that a GGX lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5733,7 +6605,10 @@ highp vec3 vair_env_grid_ggx(highp sampler2D env, vair_Frame frame, highp vec3 v
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_GGX_9A0AEA5E
+#define VAIR_ENV_MONTE_CARLO_GGX_9A0AEA5E
 // Light that a GGX lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5769,7 +6644,10 @@ highp vec3 vair_env_monte_carlo_ggx(highp sampler2D env, vair_Frame frame, highp
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_GGX_7CE1E9A3
+#define VAIR_ENV_FILTERED_GGX_7CE1E9A3
 // Light that a GGX lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5808,7 +6686,10 @@ highp vec3 vair_env_filtered_ggx(highp sampler2D env, vair_Frame frame, highp ve
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_GGX_6C9D4A0F
+#define VAIR_ENV_GUARDED_GGX_6C9D4A0F
 // Light that a GGX lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5851,7 +6732,10 @@ highp vec3 vair_env_guarded_ggx(highp sampler2D env, vair_Frame frame, highp vec
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_LAMBERT_23417FAB
+#define VAIR_ENV_GRID_LAMBERT_23417FAB
 // Light that a Lambert lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5894,7 +6778,10 @@ highp vec3 vair_env_grid_lambert(highp sampler2D env, vair_Frame frame, highp ve
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_LAMBERT_E01E53DA
+#define VAIR_ENV_MONTE_CARLO_LAMBERT_E01E53DA
 // Light that a Lambert lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5928,7 +6815,10 @@ highp vec3 vair_env_monte_carlo_lambert(highp sampler2D env, vair_Frame frame, h
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_LAMBERT_52A9EE7B
+#define VAIR_ENV_FILTERED_LAMBERT_52A9EE7B
 // Light that a Lambert lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5965,7 +6855,10 @@ highp vec3 vair_env_filtered_lambert(highp sampler2D env, vair_Frame frame, high
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_LAMBERT_4DB645FB
+#define VAIR_ENV_GUARDED_LAMBERT_4DB645FB
 // Light that a Lambert lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6006,7 +6899,10 @@ highp vec3 vair_env_guarded_lambert(highp sampler2D env, vair_Frame frame, highp
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_PHONG_CEACB1C4
+#define VAIR_ENV_GRID_PHONG_CEACB1C4
 // Light that a Phong lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6050,7 +6946,10 @@ highp vec3 vair_env_grid_phong(highp sampler2D env, vair_Frame frame, highp vec3
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_PHONG_8AF1F886
+#define VAIR_ENV_MONTE_CARLO_PHONG_8AF1F886
 // Light that a Phong lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6085,7 +6984,10 @@ highp vec3 vair_env_monte_carlo_phong(highp sampler2D env, vair_Frame frame, hig
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_PHONG_D9A442F4
+#define VAIR_ENV_FILTERED_PHONG_D9A442F4
 // Light that a Phong lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6123,7 +7025,10 @@ highp vec3 vair_env_filtered_phong(highp sampler2D env, vair_Frame frame, highp 
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_PHONG_A2BFA52C
+#define VAIR_ENV_GUARDED_PHONG_A2BFA52C
 // Light that a Phong lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6165,7 +7070,10 @@ highp vec3 vair_env_guarded_phong(highp sampler2D env, vair_Frame frame, highp v
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_POULIN_FOURNIER_AC526B8A
+#define VAIR_ENV_GRID_POULIN_FOURNIER_AC526B8A
 // Light that satin reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6212,7 +7120,10 @@ highp vec3 vair_env_grid_poulin_fournier(highp sampler2D env, vair_Frame frame, 
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_POULIN_FOURNIER_CBCED926
+#define VAIR_ENV_MONTE_CARLO_POULIN_FOURNIER_CBCED926
 // Light that satin reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6251,7 +7162,10 @@ highp vec3 vair_env_monte_carlo_poulin_fournier(highp sampler2D env, vair_Frame 
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_POULIN_FOURNIER_706C6F41
+#define VAIR_ENV_FILTERED_POULIN_FOURNIER_706C6F41
 // Light that satin reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6293,7 +7207,10 @@ highp vec3 vair_env_filtered_poulin_fournier(highp sampler2D env, vair_Frame fra
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_POULIN_FOURNIER_5B998D7D
+#define VAIR_ENV_GUARDED_POULIN_FOURNIER_5B998D7D
 // Light that satin reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6339,7 +7256,10 @@ highp vec3 vair_env_guarded_poulin_fournier(highp sampler2D env, vair_Frame fram
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_PREFILTERED_59FD5C5E
+#define VAIR_ENV_PREFILTERED_59FD5C5E
 // Light that a power of the cosine gathers about a direction, from a map convolved with that lobe.
 //   env         what `vair env --prefilter EXPONENT` writes for one exponent p, in the layout of
 //               vair_env_radiance. Only its largest level is read; it needs no others; linear
@@ -6359,7 +7279,10 @@ highp vec3 vair_env_guarded_poulin_fournier(highp sampler2D env, vair_Frame fram
 highp vec3 vair_env_prefiltered(highp sampler2D env, highp vec3 w) {
     return vair_env_level(env, w, 0u);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_STRAND_7B52E8B8
+#define VAIR_ENV_GRID_STRAND_7B52E8B8
 // Light that a strand reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6403,7 +7326,10 @@ highp vec3 vair_env_grid_strand(highp sampler2D env, vair_Frame frame, highp vec
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_STRAND_7A51A367
+#define VAIR_ENV_MONTE_CARLO_STRAND_7A51A367
 // Light that a strand reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6437,7 +7363,10 @@ highp vec3 vair_env_monte_carlo_strand(highp sampler2D env, vair_Frame frame, hi
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_STRAND_230947A5
+#define VAIR_ENV_FILTERED_STRAND_230947A5
 // Light that a strand reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6474,7 +7403,10 @@ highp vec3 vair_env_filtered_strand(highp sampler2D env, vair_Frame frame, highp
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_STRAND_878628B5
+#define VAIR_ENV_GUARDED_STRAND_878628B5
 // Light that a strand reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6515,7 +7447,10 @@ highp vec3 vair_env_guarded_strand(highp sampler2D env, vair_Frame frame, highp 
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_WARD_1C284954
+#define VAIR_ENV_GRID_WARD_1C284954
 // Light that a Ward lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6560,7 +7495,10 @@ highp vec3 vair_env_grid_ward(highp sampler2D env, vair_Frame frame, highp vec3 
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_WARD_18B04DE2
+#define VAIR_ENV_MONTE_CARLO_WARD_18B04DE2
 // Light that a Ward lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6596,7 +7534,10 @@ highp vec3 vair_env_monte_carlo_ward(highp sampler2D env, vair_Frame frame, high
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_WARD_A2AFDA66
+#define VAIR_ENV_FILTERED_WARD_A2AFDA66
 // Light that a Ward lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6635,7 +7576,10 @@ highp vec3 vair_env_filtered_ward(highp sampler2D env, vair_Frame frame, highp v
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_WARD_8D4CCEFD
+#define VAIR_ENV_GUARDED_WARD_8D4CCEFD
 // Light that a Ward lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6678,7 +7622,10 @@ highp vec3 vair_env_guarded_ward(highp sampler2D env, vair_Frame frame, highp ve
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_FACTORED_SHADE_879089D4
+#define VAIR_FACTORED_SHADE_879089D4
 // Light from one direction that a factored reflectance sends to the viewer, for light of 1.
 //   p           factor of the directions to light and viewer, over vair_parabolic_uv; linear filter
 //               within and between levels; clamp in u, clamp in v
@@ -6705,7 +7652,10 @@ highp vec3 vair_factored_shade(highp sampler2D p, highp sampler2D q, highp vec3 
     highp vec3 product = sides * textureLod(q, vair_parabolic_uv(vair_half_vector(l, v)), 0.0).xyz;
     return max(l.z, 0.0) * (scale * product);
 }
+#endif
 
+#ifndef VAIR_ANGLE_TABLE_LOOKUP_5451BD1C
+#define VAIR_ANGLE_TABLE_LOOKUP_5451BD1C
 // Bilinear lookup in a table whose ends are the centres of its outermost texels.
 //   table    values of any size; linear filter within and between levels; clamp in u, clamp in v
 //   uv       coordinates of both angles, 0 and 1 at the ends of the axes; in [0, 1]
@@ -6716,7 +7666,10 @@ highp vec4 vair_angle_table_lookup(highp sampler2D table, highp vec2 uv) {
     highp vec2 margin = vec2(0.5) / vec2(textureSize(table, 0));
     return textureLod(table, margin + uv * (vec2(1.0) - 2.0 * margin), 0.0);
 }
+#endif
 
+#ifndef VAIR_ANGLE_SHARE_54732D4B
+#define VAIR_ANGLE_SHARE_54732D4B
 // Angle whose sine is c, from -pi / 2 to pi / 2, as a coordinate from 0 to 1.
 //   c           cosine of the angle with an axis; in [-1, 1]
 //   returns     asin(c) / pi + 1/2, in [0, 1]; 1/2 exactly at 0
@@ -6732,7 +7685,10 @@ highp float vair_angle_share(highp float c) {
         * (0.5 + a * (-0.068307295 + a * (0.028283684 + a * high)));
     return c >= 0.0 ? 1.0 - share : share;
 }
+#endif
 
+#ifndef VAIR_STRAND_TABLE_UV_267E1FFF
+#define VAIR_STRAND_TABLE_UV_267E1FFF
 // Coordinates of a table over the angles of light and viewer with a strand: axes warped by the arc
 // sine.
 //   cos_l       t.l, cosine between the tangent and the direction to the light; in [-1, 1]
@@ -6749,7 +7705,10 @@ highp float vair_angle_share(highp float c) {
 highp vec2 vair_strand_table_uv(highp float cos_l, highp float cos_v) {
     return vec2(vair_angle_share(cos_l), vair_angle_share(cos_v));
 }
+#endif
 
+#ifndef VAIR_FACTORED_STRAND_SHADE_2BE58614
+#define VAIR_FACTORED_STRAND_SHADE_2BE58614
 // Light from one direction that a reflectance in four factors sends to the viewer, for light of 1.
 //   p           factor of the directions to light and viewer, over vair_parabolic_uv; linear filter
 //               within and between levels; clamp in u, clamp in v
@@ -6774,7 +7733,10 @@ highp vec3 vair_factored_strand_shade(highp sampler2D p, highp sampler2D q, high
     return vair_angle_table_lookup(r, vair_strand_table_uv(l.x, v.x)).xyz
         * vair_factored_shade(p, q, l, v, scale);
 }
+#endif
 
+#ifndef VAIR_ACROSS_SHARE_4FD8FCE6
+#define VAIR_ACROSS_SHARE_4FD8FCE6
 // Angle of a direction about the tangent x, from -y over the normal z to y, as a coordinate from 0
 // to 1.
 //   w           direction in the local frame; unit vector
@@ -6786,7 +7748,10 @@ highp vec3 vair_factored_strand_shade(highp sampler2D p, highp sampler2D q, high
 highp float vair_across_share(highp vec3 w) {
     return clamp(0.5 + 2.0 * vair_turn_of(w.y, w.z), 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FACTORED_SATIN_SHADE_02901EEF
+#define VAIR_FACTORED_SATIN_SHADE_02901EEF
 // Light from one direction that cloth in four factors sends to the viewer, for light of 1.
 //   p           factor of the directions to light and viewer, over vair_parabolic_uv; linear filter
 //               within and between levels; clamp in u, clamp in v
@@ -6813,7 +7778,10 @@ highp vec3 vair_factored_satin_shade(highp sampler2D p, highp sampler2D q, highp
         vec2(vair_across_share(l), vair_across_share(v))).xyz;
     return turned * vair_factored_shade(p, q, l, v, scale);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_TABLE_9C057977
+#define VAIR_STRAND_COSINE_TABLE_9C057977
 // Cosine between the viewer and the best mirror direction of a strand, read from a table.
 //   table       the strand cosine over vair_strand_table_uv in its first channel, as `vair table
 //               vair_strand_cosine` writes it; any size; linear filter within and between levels;
@@ -6832,5 +7800,4 @@ highp vec3 vair_factored_satin_shade(highp sampler2D p, highp sampler2D q, highp
 highp float vair_strand_cosine_table(highp sampler2D table, highp float cos_l, highp float cos_v) {
     return vair_angle_table_lookup(table, vair_strand_table_uv(cos_l, cos_v)).x;
 }
-
 #endif

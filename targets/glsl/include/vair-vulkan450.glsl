@@ -8,9 +8,8 @@
 // colours linear RGB. Finite input inside the stated domain gives a finite result. An error is
 // declared: no driver measured exceeds it; guaranteed is what the specification permits at worst.
 
-#ifndef VAIR_GLSL_INCLUDED
-#define VAIR_GLSL_INCLUDED
-
+#ifndef VAIR_FRAME_1BB66820
+#define VAIR_FRAME_1BB66820
 // Right-handed orthonormal frame; local coordinates are x along the tangent, y bitangent, z normal.
 //   tangent    unit vector, x axis
 //   bitangent  unit vector, y axis: normal x tangent
@@ -20,7 +19,10 @@ struct vair_Frame {
     vec3 bitangent;
     vec3 normal;
 };
+#endif
 
+#ifndef VAIR_STRANDANGLES_46013A36
+#define VAIR_STRANDANGLES_46013A36
 // Angles of light and viewer to a strand.
 //   cos_l   cosine of the angle between tangent and light: t.l; in [-1, 1]
 //   cos_v   cosine of the angle between tangent and viewer: t.v; in [-1, 1]
@@ -34,7 +36,10 @@ struct vair_StrandAngles {
     float sin_v;
     float defect;
 };
+#endif
 
+#ifndef VAIR_FURCOAT_CC45D425
+#define VAIR_FURCOAT_CC45D425
 // Average geometry of the hairs around a point; one unit of length throughout.
 //   density      hairs per unit of skin area; in [0, 1e9]
 //   hair_length  length of a hair; in [0, 1000]
@@ -46,7 +51,10 @@ struct vair_FurCoat {
     float radius_base;
     float radius_tip;
 };
+#endif
 
+#ifndef VAIR_FURGEOMETRY_82F95425
+#define VAIR_FURGEOMETRY_82F95425
 // One light and the viewer as the hairs of a coat see them.
 //   sin_l           sine of the angle between hair and light; in [0, 1]
 //   azimuth_cosine  cosine of the angle between light and viewer around the hair; in [-1, 1]
@@ -62,7 +70,10 @@ struct vair_FurGeometry {
     float depth_view;
     float depth_light;
 };
+#endif
 
+#ifndef VAIR_FURWEIGHTS_A08F73E8
+#define VAIR_FURWEIGHTS_A08F73E8
 // What hair and skin contribute to the light that leaves a coat.
 //   hair  weight of the reflectance of a single hair; in [0, 1]
 //   skin  weight of the reflectance of the skin; in [0, 1]
@@ -70,7 +81,10 @@ struct vair_FurWeights {
     float hair;
     float skin;
 };
+#endif
 
+#ifndef VAIR_FUROPTICS_48BA5A34
+#define VAIR_FUROPTICS_48BA5A34
 // How the hairs of a coat reflect, transmit and shadow.
 //   k_diffuse     diffuse colour of a hair; in [0, 1]
 //   k_specular    colour of the highlight; in [0, 1]
@@ -94,7 +108,10 @@ struct vair_FurOptics {
     float cos_lit;
     float overlap;
 };
+#endif
 
+#ifndef VAIR_FURAVERAGE_0A60CF0E
+#define VAIR_FURAVERAGE_0A60CF0E
 // Average direction of the hairs in a footprint, and how far single hairs stray from it.
 //   tangent   mean hair direction; unit vector
 //   variance  variance of a hair direction about the mean along each perpendicular axis, in radian
@@ -103,7 +120,10 @@ struct vair_FurAverage {
     vec3 tangent;
     float variance;
 };
+#endif
 
+#ifndef VAIR_DUALPARABOLOID_C4207706
+#define VAIR_DUALPARABOLOID_C4207706
 // A place in a dual-paraboloid map.
 //   uv    texture coordinates in [0, 1]^2
 //   back  1 for the half around -z, 0 for the half around +z; in [0, 1]
@@ -111,7 +131,10 @@ struct vair_DualParaboloid {
     vec2 uv;
     float back;
 };
+#endif
 
+#ifndef VAIR_BESSEL_I0E_F8B61C47
+#define VAIR_BESSEL_I0E_F8B61C47
 // Scaled modified Bessel function e^-|x| I0(x), the normaliser of a wrapped Gaussian lobe.
 //   x           any sign; held at |x| = 131072 beyond; in [-100000, 100000]
 //   returns     e^-|x| I0(x), in (0, 1]
@@ -131,7 +154,10 @@ float vair_bessel_i0e(float x) {
     float denominator = 1.0 + m * (2.318332 + m * (2.4194713 + m * tail));
     return sqrt(numerator / denominator);
 }
+#endif
 
+#ifndef VAIR_BESSEL_I0E_SHORT_DFEA82F7
+#define VAIR_BESSEL_I0E_SHORT_DFEA82F7
 // Scaled modified Bessel function e^-|x| I0(x) to 2.2e-4, at half the cost. Variant of
 // vair_bessel_i0e.
 //   x           any sign; held at |x| = 131072 beyond; in [-100000, 100000]
@@ -147,7 +173,10 @@ float vair_bessel_i0e_short(float x) {
     float denominator = 1.0 + m * (2.3635423 + m * (2.6940675 + m * (1.0433983 + m * 1.1907202)));
     return sqrt(numerator / denominator);
 }
+#endif
 
+#ifndef VAIR_BESSEL_I0E_COARSE_A140C222
+#define VAIR_BESSEL_I0E_COARSE_A140C222
 // Scaled modified Bessel function e^-|x| I0(x) to 2.2e-3. Variant of vair_bessel_i0e.
 //   x           any sign; held at |x| = 131072 beyond; in [-100000, 100000]
 //   returns     e^-|x| I0(x), in (0, 1]
@@ -162,7 +191,10 @@ float vair_bessel_i0e_coarse(float x) {
     float denominator = 1.0 + m * (2.449919 + m * (2.0552883 + m * 3.114644));
     return sqrt(numerator / denominator);
 }
+#endif
 
+#ifndef VAIR_EXPREL_SERIES_48AE421E
+#define VAIR_EXPREL_SERIES_48AE421E
 // Polynomial for (1 - e^-x) / x.
 //   x        in [0, 0.7]
 //   returns  (1 - e^-x) / x, in [0.719, 1]; 1 at x = 0
@@ -173,7 +205,10 @@ float vair_exprel_series(float x) {
     return 1.0 + x * (-0.4999993 + x * (0.166653 + x
         * (-0.041577216 + x * (0.008073649 + x * (-0.0010359237)))));
 }
+#endif
 
+#ifndef VAIR_EXPREL_NEG_EBF7B3CD
+#define VAIR_EXPREL_NEG_EBF7B3CD
 // Mean of e^-u over 0 <= u <= x, which is (1 - e^-x) / x.
 //   x           optical depth, at least 0; in [0, 1e30]
 //   returns     (1 - e^-x) / x, in (0, 1], with flat relative error
@@ -188,7 +223,10 @@ float vair_exprel_neg(float x) {
     float quotient = (1.0 - exp(-min(x, 80.0))) / max(x, 0.7);
     return x < 0.7 ? series : quotient;
 }
+#endif
 
+#ifndef VAIR_GROWTH_RATIONAL_481CA3B3
+#define VAIR_GROWTH_RATIONAL_481CA3B3
 // Function h for which x h(x) imitates e^x - 1.
 //   x        at least 0; in [0, 1e30]
 //   returns  h(x), with 1 / (1 + x h) = e^-x to 3.9e-4, x h / (1 + x h) = 1 - e^-x and h / (1 + x
@@ -203,7 +241,10 @@ float vair_growth_rational(float x) {
     float first = 2.0 + u;
     return cubic * first * (2.0 + u * first);
 }
+#endif
 
+#ifndef VAIR_EXPREL_NEG_RATIONAL_BE7E4778
+#define VAIR_EXPREL_NEG_RATIONAL_BE7E4778
 // Mean of e^-u over 0 <= u <= x as a ratio of polynomials: 0.04 percent, and cheap. Variant of
 // vair_exprel_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -217,7 +258,10 @@ float vair_exprel_neg_rational(float x) {
     float h = vair_growth_rational(x);
     return h / (1.0 + x * h);
 }
+#endif
 
+#ifndef VAIR_GROWTH_COARSE_10EBACBB
+#define VAIR_GROWTH_COARSE_10EBACBB
 // Polynomial h for which x h(x) imitates e^x - 1, to one percent.
 //   x        at least 0; in [0, 1e30]
 //   returns  h(x), with 1 / (1 + x h) = e^-x to 7e-3, x h / (1 + x h) = 1 - e^-x and h / (1 + x h)
@@ -228,7 +272,10 @@ float vair_growth_coarse(float x) {
     float y = min(x, 88.0);
     return 1.0 + y * (0.3910993 + y * 0.37012953);
 }
+#endif
 
+#ifndef VAIR_EXPREL_NEG_RATIONAL_COARSE_A6B0C5E6
+#define VAIR_EXPREL_NEG_RATIONAL_COARSE_A6B0C5E6
 // Mean of e^-u over 0 <= u <= x as a ratio of polynomials of low degree: one percent. Variant of
 // vair_exprel_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -242,7 +289,10 @@ float vair_exprel_neg_rational_coarse(float x) {
     float h = vair_growth_coarse(x);
     return h / (1.0 + x * h);
 }
+#endif
 
+#ifndef VAIR_ATANH_SERIES_1FD95C66
+#define VAIR_ATANH_SERIES_1FD95C66
 // Inverse hyperbolic tangent of z, divided by z.
 //   z_squared  z * z, for |z| <= 1/3; in [0, 0.111111112]
 //   returns    atanh(z) / z, in [1, 1.0398]
@@ -253,7 +303,10 @@ float vair_atanh_series(float z_squared) {
     return 1.0 + z_squared * (0.3333321 + z_squared
         * (0.20010719 + z_squared * (0.14001513 + z_squared * 0.1400339)));
 }
+#endif
 
+#ifndef VAIR_LOG_ONE_MINUS_F7A1220F
+#define VAIR_LOG_ONE_MINUS_F7A1220F
 // Natural logarithm of 1 - q, accurate as q -> 0.
 //   q           in [0, 1); the largest float32 below 1 gives -16.64
 //   returns     log(1 - q), at most 0, with flat relative error
@@ -270,7 +323,10 @@ float vair_log_one_minus(float q) {
     float log_far = log(max(1.0 - q, 1.2e-38));
     return q < 0.5 ? log_near : log_far;
 }
+#endif
 
+#ifndef VAIR_LOG_ONE_MINUS_DIRECT_97DBFBF0
+#define VAIR_LOG_ONE_MINUS_DIRECT_97DBFBF0
 // Natural logarithm of 1 - q as written: a small absolute error, no relative accuracy as q -> 0.
 // Variant of vair_log_one_minus.
 //   q           in [0, 1)
@@ -284,7 +340,10 @@ float vair_log_one_minus(float q) {
 float vair_log_one_minus_direct(float q) {
     return log(max(1.0 - q, 1.2e-38));
 }
+#endif
 
+#ifndef VAIR_LOG_ONE_MINUS_THIN_B3D5EF60
+#define VAIR_LOG_ONE_MINUS_THIN_B3D5EF60
 // Natural logarithm of 1 - q for q up to 1/2 by two terms: no logarithm, 0.05 percent. Variant of
 // vair_log_one_minus.
 //   q           in [0, 0.5]
@@ -298,7 +357,10 @@ float vair_log_one_minus_thin(float q) {
     float z = q / (2.0 - q);
     return -2.0 * z * (1.0 + 0.35312897 * (z * z));
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_02474442
+#define VAIR_ONE_MINUS_EXP_NEG_02474442
 // Opacity 1 - e^-x of the optical depth x, with flat relative error down to x = 1e-30.
 //   x           optical depth, at least 0; in [0, 1e30]
 //   returns     1 - e^-x, in [0, 1]
@@ -314,7 +376,10 @@ float vair_one_minus_exp_neg(float x) {
     float difference = 1.0 - exp(-min(x, 80.0));
     return x < 0.7 ? series : difference;
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_DIRECT_8F394B84
+#define VAIR_ONE_MINUS_EXP_NEG_DIRECT_8F394B84
 // Opacity 1 - e^-x as written: a small absolute error, no relative accuracy for thin coats. Variant
 // of vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -326,7 +391,10 @@ float vair_one_minus_exp_neg(float x) {
 float vair_one_minus_exp_neg_direct(float x) {
     return 1.0 - exp(-min(x, 80.0));
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_DOUBLING_8095A47F
+#define VAIR_ONE_MINUS_EXP_NEG_DOUBLING_8095A47F
 // Opacity 1 - e^-x without a transcendental function or a branch, with flat relative error. Variant
 // of vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -346,7 +414,10 @@ float vair_one_minus_exp_neg_doubling(float x) {
     float e8 = e4 * (2.0 - e4);
     return e8 * (2.0 - e8);
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_RATIONAL_2383E9B9
+#define VAIR_ONE_MINUS_EXP_NEG_RATIONAL_2383E9B9
 // Opacity 1 - e^-x as a ratio of polynomials: a fifth of half an 8-bit step, and cheap. Variant of
 // vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -361,7 +432,10 @@ float vair_one_minus_exp_neg_rational(float x) {
     float w = x * vair_growth_rational(x);
     return w / (1.0 + w);
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_DOUBLING_SHORT_DA55795F
+#define VAIR_ONE_MINUS_EXP_NEG_DOUBLING_SHORT_DA55795F
 // Opacity 1 - e^-x by four doublings of a quadratic: no exponential, no division, no branch.
 // Variant of vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -379,7 +453,10 @@ float vair_one_minus_exp_neg_doubling_short(float x) {
     float e8 = e4 * (2.0 - e4);
     return e8 * (2.0 - e8);
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_RATIONAL_COARSE_C7CAF108
+#define VAIR_ONE_MINUS_EXP_NEG_RATIONAL_COARSE_C7CAF108
 // Opacity 1 - e^-x as a ratio of polynomials of low degree: one percent. Variant of
 // vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -393,7 +470,10 @@ float vair_one_minus_exp_neg_rational_coarse(float x) {
     float w = x * vair_growth_coarse(x);
     return w / (1.0 + w);
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_AF30D026
+#define VAIR_POW_ONE_MINUS_AF30D026
 // Power (1 - q)^p, accurate as q -> 0 and for exponents up to 1e5.
 //   q           defect 1 - x of the base x, in [0, 2]; computed directly, not as 1 - x
 //   p           exponent, in [0, 1e5]
@@ -410,7 +490,10 @@ float vair_pow_one_minus(float q, float p) {
     float power = exp(max(p * vair_log_one_minus(inside), -80.0));
     return (q < 1.0 || p <= 0.0) ? power : 0.0;
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_FROM4_810937DA
+#define VAIR_POW_ONE_MINUS_FROM4_810937DA
 // Power (1 - q)^p for exponents from 4 on, without a logarithm. Variant of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
 //   p           exponent, in [4, 1e5]
@@ -430,7 +513,10 @@ float vair_pow_one_minus_from4(float q, float p) {
     float series = 1.0 + z_squared * (0.32551703 + z_squared * 0.29121366);
     return exp(max(-2.0 * p * z * series, -80.0));
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_GAUSS_6F849FB9
+#define VAIR_POW_ONE_MINUS_GAUSS_6F849FB9
 // Power (1 - q)^p by its first term: a third of a percent off at p = 8 and exact for large p.
 // Variant of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -447,7 +533,10 @@ float vair_pow_one_minus_gauss(float q, float p) {
     float inside = min(q, 1.9);
     return exp(max(-2.0 * p * (inside / (2.0 - inside)), -80.0));
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_SQ16_2CD829AA
+#define VAIR_POW_ONE_MINUS_SQ16_2CD829AA
 // Power (1 - q)^p by four squarings and one division, without a transcendental function. Variant of
 // vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -469,7 +558,10 @@ float vair_pow_one_minus_sq16(float q, float p) {
     float r8 = r4 * r4;
     return r8 * r8;
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_FROM8_40461238
+#define VAIR_POW_ONE_MINUS_FROM8_40461238
 // Power (1 - q)^p for exponents from 8 on, by one exponential and without a division. Variant of
 // vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -484,7 +576,10 @@ float vair_pow_one_minus_from8(float q, float p) {
     float inside = clamp(q, 0.0, 2.0);
     return exp(-min(p * inside * (1.0 + inside * (0.47710302 + inside * 0.5246705)), 80.0));
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_CUBIC8_CE3558E6
+#define VAIR_POW_ONE_MINUS_CUBIC8_CE3558E6
 // Power (1 - q)^p by three squarings of a cubic: no transcendental function, no division. Variant
 // of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -503,7 +598,10 @@ float vair_pow_one_minus_cubic8(float q, float p) {
     float r4 = r2 * r2;
     return r4 * r4;
 }
+#endif
 
+#ifndef VAIR_SAFE_NORMALIZE_2F20425C
+#define VAIR_SAFE_NORMALIZE_2F20425C
 // Unit vector along x for any length from 1e-30 to 1e30, and a chosen direction for the zero
 // vector.
 //   x           vector to normalise; length in [1e-30, 1e30]
@@ -523,7 +621,10 @@ vec3 vair_safe_normalize(vec3 x, vec3 fallback) {
     vec3 unit = inversesqrt(max(squared, 1e-37)) * scaled;
     return squared > 1e-37 ? unit : fallback;
 }
+#endif
 
+#ifndef VAIR_SAFE_NORMALIZE_DOT_F93D3EDE
+#define VAIR_SAFE_NORMALIZE_DOT_F93D3EDE
 // Unit vector along x for ordinary lengths, and a chosen direction for the zero vector. Variant of
 // vair_safe_normalize.
 //   x           vector to normalise, of length 1e-15 to 1e18, or zero
@@ -540,7 +641,10 @@ vec3 vair_safe_normalize_dot(vec3 x, vec3 fallback) {
     vec3 unit = inversesqrt(max(squared, 1e-37)) * x;
     return squared > 1e-37 ? unit : fallback;
 }
+#endif
 
+#ifndef VAIR_SAFE_NORMALIZE_NONZERO_8BF0279E
+#define VAIR_SAFE_NORMALIZE_NONZERO_8BF0279E
 // Unit vector along x for ordinary lengths, where x is known not to be zero. Variant of
 // vair_safe_normalize.
 //   x           vector to normalise, of length 1e-15 to 1e18
@@ -554,7 +658,10 @@ vec3 vair_safe_normalize_dot(vec3 x, vec3 fallback) {
 vec3 vair_safe_normalize_nonzero(vec3 x, vec3 fallback) {
     return inversesqrt(max(dot(x, x), 1e-37)) * x;
 }
+#endif
 
+#ifndef VAIR_SAFE_POW_F0F731E3
+#define VAIR_SAFE_POW_F0F731E3
 // Power x^y that is 0 for negative bases and 1 for exponent 0.
 //   x           base; in [-1, 16]
 //   y           exponent; in [-28, 100000]
@@ -581,7 +688,10 @@ float vair_safe_pow(float x, float y) {
     float bounded = x > 0.0 ? positive : 0.0;
     return y == 0.0 ? 1.0 : bounded;
 }
+#endif
 
+#ifndef VAIR_SAFE_POW_EXP2_2EB0D523
+#define VAIR_SAFE_POW_EXP2_2EB0D523
 // Power x^y by the built-in logarithm: cheaper, with an error that grows with the exponent. Variant
 // of vair_safe_pow.
 //   x           base; in [-1, 16]
@@ -603,7 +713,10 @@ float vair_safe_pow_exp2(float x, float y) {
     float bounded = x > 0.0 ? positive : 0.0;
     return y == 0.0 ? 1.0 : bounded;
 }
+#endif
 
+#ifndef VAIR_SAFE_POW_NEAR_ONE_273208F8
+#define VAIR_SAFE_POW_NEAR_ONE_273208F8
 // Power x^y for bases from 1/2 to 2: as accurate as vair_safe_pow, without a logarithm. Variant of
 // vair_safe_pow.
 //   x           base, in [0.5, 2]
@@ -620,7 +733,10 @@ float vair_safe_pow_near_one(float x, float y) {
     float z = (x - 1.0) / (x + 1.0);
     return exp(clamp(2.0 * y * z * vair_atanh_series(z * z), -80.0, 80.0));
 }
+#endif
 
+#ifndef VAIR_SAFE_SMOOTHSTEP_D3779DC0
+#define VAIR_SAFE_SMOOTHSTEP_D3779DC0
 // Smooth step from 0 at edge0 to 1 at edge1, in either order.
 //   edge0       where the result is 0; in [-10000, 10000]
 //   edge1       where the result is 1; may lie below edge0, then the step descends; in [-10000,
@@ -643,7 +759,10 @@ float vair_safe_smoothstep(float edge0, float edge1, float x) {
     float hard = x < edge0 ? 0.0 : 1.0;
     return abs(width) >= 1.2e-38 ? s * s * (3.0 - 2.0 * s) : hard;
 }
+#endif
 
+#ifndef VAIR_SAFE_SMOOTHSTEP_RISING_5CAD536B
+#define VAIR_SAFE_SMOOTHSTEP_RISING_5CAD536B
 // Smooth step from 0 at edge0 to 1 at edge1, for edge0 < edge1. Variant of vair_safe_smoothstep.
 //   edge0       where the result is 0; in [-10000, 10000]
 //   edge1       where the result is 1; above edge0; in [-10000, 10000]
@@ -658,7 +777,10 @@ float vair_safe_smoothstep_rising(float edge0, float edge1, float x) {
     float s = clamp((x - edge0) / max(edge1 - edge0, 1e-30), 0.0, 1.0);
     return s * s * (3.0 - 2.0 * s);
 }
+#endif
 
+#ifndef VAIR_SAFE_SMOOTHSTEP_RAMP_EF921AAB
+#define VAIR_SAFE_SMOOTHSTEP_RAMP_EF921AAB
 // Straight step in place of the smooth one, for edge0 < edge1: 0.031 off, with corners. Variant of
 // vair_safe_smoothstep.
 //   edge0       lower edge; in [-10000, 10000]
@@ -675,7 +797,10 @@ float vair_safe_smoothstep_ramp(float edge0, float edge1, float x) {
     float s = (x - edge0) / max(edge1 - edge0, 1e-30);
     return clamp(-0.13309973 + 1.2661995 * s, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_SAFE_SQRT_607D833E
+#define VAIR_SAFE_SQRT_607D833E
 // Square root of x, and 0 for negative x.
 //   x           number; what rounding pushed below zero counts as zero; in [-1, 1e30]
 //   returns     sqrt(max(x, 0)), at least 0
@@ -688,7 +813,10 @@ float vair_safe_smoothstep_ramp(float edge0, float edge1, float x) {
 float vair_safe_sqrt(float x) {
     return sqrt(max(x, 0.0));
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_NORMAL_F6E5BD33
+#define VAIR_FRAME_FROM_NORMAL_F6E5BD33
 // Right-handed frame around n, by a fixed rule that is continuous on each of the halves z >= 0 and
 // z < 0.
 //   n           normal; unit vector
@@ -707,7 +835,10 @@ vair_Frame vair_frame_from_normal(vec3 n) {
     vec3 bitangent = vec3(b, s + n.y * n.y * a, -n.y);
     return vair_Frame(tangent, bitangent, n);
 }
+#endif
 
+#ifndef VAIR_DOUBLED_CROSS_72D57BBE
+#define VAIR_DOUBLED_CROSS_72D57BBE
 // Twice the outer product of two directions, with flat relative error at every angle.
 //   a        first direction; unit vector
 //   b        second direction; unit vector
@@ -723,7 +854,10 @@ vec3 vair_doubled_cross(vec3 a, vec3 b) {
     vec3 s = a + b;
     return vec3(d.y * s.z - d.z * s.y, d.z * s.x - d.x * s.z, d.x * s.y - d.y * s.x);
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_TANGENT_F5F130D5
+#define VAIR_FRAME_FROM_TANGENT_F5F130D5
 // Right-handed frame with the normal n and, as far as that allows, the tangent t.
 //   n           normal, kept as it is; unit vector
 //   t           wanted tangent; only its part across n counts; unit vector
@@ -740,7 +874,10 @@ vair_Frame vair_frame_from_tangent(vec3 n, vec3 t) {
         vair_frame_from_normal(n).bitangent);
     return vair_Frame(cross(bitangent, n), bitangent, n);
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_TANGENT_APART_E851FA2A
+#define VAIR_FRAME_FROM_TANGENT_APART_E851FA2A
 // Right-handed frame with the normal n and the tangent t, for tangents that are well off the
 // normal. Variant of vair_frame_from_tangent.
 //   n           normal, kept as it is; unit vector
@@ -758,7 +895,10 @@ vair_Frame vair_frame_from_tangent_apart(vec3 n, vec3 t) {
     vec3 bitangent = inversesqrt(max(dot(across, across), 1e-37)) * across;
     return vair_Frame(cross(bitangent, n), bitangent, n);
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_TANGENT_ORTHOGONAL_24BE0FC1
+#define VAIR_FRAME_FROM_TANGENT_ORTHOGONAL_24BE0FC1
 // Right-handed frame of a normal and a tangent that are orthogonal already. Variant of
 // vair_frame_from_tangent.
 //   n           normal, kept as it is; unit vector
@@ -773,7 +913,10 @@ vair_Frame vair_frame_from_tangent_apart(vec3 n, vec3 t) {
 vair_Frame vair_frame_from_tangent_orthogonal(vec3 n, vec3 t) {
     return vair_Frame(t, cross(n, t), n);
 }
+#endif
 
+#ifndef VAIR_HALF_VECTOR_832E2F6C
+#define VAIR_HALF_VECTOR_832E2F6C
 // Unit vector halfway between l and v.
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
@@ -793,7 +936,10 @@ vec3 vair_half_vector(vec3 l, vec3 v) {
     vec3 middle = inversesqrt(max(squared, 1e-12)) * total;
     return squared < 1e-12 ? vair_frame_from_normal(l).tangent : middle;
 }
+#endif
 
+#ifndef VAIR_HALF_VECTOR_APART_4C551741
+#define VAIR_HALF_VECTOR_APART_4C551741
 // Unit vector halfway between l and v, where they are not opposite. Variant of vair_half_vector.
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
@@ -808,7 +954,10 @@ vec3 vair_half_vector_apart(vec3 l, vec3 v) {
     vec3 total = l + v;
     return inversesqrt(max(dot(total, total), 1e-12)) * total;
 }
+#endif
 
+#ifndef VAIR_HALF_VECTOR_ACUTE_E9E9B88B
+#define VAIR_HALF_VECTOR_ACUTE_E9E9B88B
 // Unit vector halfway between l and v that are at most a right angle apart, to 5e-4, without a
 // root. Variant of vair_half_vector.
 //   l           direction to the light; unit vector
@@ -823,7 +972,10 @@ vec3 vair_half_vector_acute(vec3 l, vec3 v) {
     float c = clamp(dot(l, v), 0.0, 1.0);
     return (0.7067681 + c * (-0.34165564 + c * (0.19444013 + c * (-0.059792068)))) * (l + v);
 }
+#endif
 
+#ifndef VAIR_LINE_COMPONENT_6589AD30
+#define VAIR_LINE_COMPONENT_6589AD30
 // Part of x along the line of t.
 //   x           vector; rounding is proportional to its length; length in [0.001, 1]
 //   t           unit vector along the line, either way
@@ -835,7 +987,10 @@ vec3 vair_half_vector_acute(vec3 l, vec3 v) {
 vec3 vair_line_component(vec3 x, vec3 t) {
     return dot(x, t) * t;
 }
+#endif
 
+#ifndef VAIR_LINE_REJECTION_5498F48F
+#define VAIR_LINE_REJECTION_5498F48F
 // Part of x across the line of t.
 //   x           vector; rounding is proportional to its length; length in [0.001, 1]
 //   t           unit vector along the line, either way
@@ -849,7 +1004,10 @@ vec3 vair_line_component(vec3 x, vec3 t) {
 vec3 vair_line_rejection(vec3 x, vec3 t) {
     return x - dot(x, t) * t;
 }
+#endif
 
+#ifndef VAIR_MIRROR_844F0857
+#define VAIR_MIRROR_844F0857
 // Reflection of l about n; both point away from the surface, and so does the result.
 //   l           direction to the light; unit vector
 //   n           normal; unit vector
@@ -862,7 +1020,10 @@ vec3 vair_line_rejection(vec3 x, vec3 t) {
 vec3 vair_mirror(vec3 l, vec3 n) {
     return 2.0 * dot(n, l) * n - l;
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_A7DD1D5C
+#define VAIR_SIN_ANGLE_A7DD1D5C
 // Sine of the angle between two directions, with flat relative error at every angle.
 //   a           first direction; unit vector
 //   b           second direction; unit vector
@@ -879,7 +1040,10 @@ float vair_sin_angle(vec3 a, vec3 b) {
     vec3 doubled = vair_doubled_cross(a, b);
     return 0.5 * sqrt(dot(doubled, doubled));
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_HALF_2349CE22
+#define VAIR_SIN_ANGLE_HALF_2349CE22
 // Sine of the angle between two directions by half angles: one root, good to 1e-4 rad. Variant of
 // vair_sin_angle.
 //   a           first direction; unit vector
@@ -899,7 +1063,10 @@ float vair_sin_angle_half(vec3 a, vec3 b) {
     vec3 total = a + b;
     return 0.5 * sqrt(dot(difference, difference) * dot(total, total));
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_CROSS_74E45904
+#define VAIR_SIN_ANGLE_CROSS_74E45904
 // Sine of the angle between two directions by their cross product. Variant of vair_sin_angle.
 //   a           first direction; unit vector
 //   b           second direction; unit vector
@@ -915,7 +1082,10 @@ float vair_sin_angle_cross(vec3 a, vec3 b) {
     vec3 product = cross(a, b);
     return sqrt(dot(product, product));
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_COSINE_27685A36
+#define VAIR_SIN_ANGLE_COSINE_27685A36
 // Sine of the angle between two directions by their cosine: the obvious form. Variant of
 // vair_sin_angle.
 //   a           first direction; unit vector
@@ -933,7 +1103,10 @@ float vair_sin_angle_cosine(vec3 a, vec3 b) {
     float c = dot(a, b);
     return sqrt(max(1.0 - c * c, 0.0));
 }
+#endif
 
+#ifndef VAIR_TO_LOCAL_C09931E2
+#define VAIR_TO_LOCAL_C09931E2
 // Coordinates of a world-space vector in a frame.
 //   frame       orthonormal frame in world space
 //   w           vector in world space; unit vector
@@ -945,7 +1118,10 @@ float vair_sin_angle_cosine(vec3 a, vec3 b) {
 vec3 vair_to_local(vair_Frame frame, vec3 w) {
     return vec3(dot(frame.tangent, w), dot(frame.bitangent, w), dot(frame.normal, w));
 }
+#endif
 
+#ifndef VAIR_TO_WORLD_2C165A7C
+#define VAIR_TO_WORLD_2C165A7C
 // World-space vector of coordinates in a frame; undoes vair_to_local.
 //   frame       orthonormal frame in world space
 //   w           vector in the frame: x along its tangent, y bitangent, z normal; unit vector
@@ -957,7 +1133,10 @@ vec3 vair_to_local(vair_Frame frame, vec3 w) {
 vec3 vair_to_world(vair_Frame frame, vec3 w) {
     return w.x * frame.tangent + w.y * frame.bitangent + w.z * frame.normal;
 }
+#endif
 
+#ifndef VAIR_INHERITED_SHADOW_CA820D46
+#define VAIR_INHERITED_SHADOW_CA820D46
 // Lambert's cosine of the carrying surface, which the strands inherit as self-shadowing.
 //   n           surface normal; unit vector
 //   l           direction to the light; unit vector
@@ -970,7 +1149,10 @@ vec3 vair_to_world(vair_Frame frame, vec3 w) {
 float vair_inherited_shadow(vec3 n, vec3 l) {
     return max(dot(n, l), 0.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_ANGLES_4EC01583
+#define VAIR_STRAND_ANGLES_4EC01583
 // Angles of a light and a viewer to a strand, computed once for diffuse and specular terms.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -995,7 +1177,10 @@ vair_StrandAngles vair_strand_angles(vec3 t, vec3 l, vec3 v) {
     float along = cos_l + cos_v;
     return vair_StrandAngles(cos_l, cos_v, sin_l, sin_v, 0.5 * (across * across + along * along));
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_7C37F37C
+#define VAIR_KAJIYA_KAY_SHADE_7C37F37C
 // Light reflected by a free strand, after Kajiya and Kay.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1017,7 +1202,10 @@ vec3 vair_kajiya_kay_shade(vec3 t, vec3 l, vec3 v, vec3 k_diffuse, vec3 k_specul
     vair_StrandAngles angles = vair_strand_angles(t, l, v);
     return angles.sin_l * k_diffuse + vair_pow_one_minus(angles.defect, exponent) * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_65D6BF16
+#define VAIR_BANKS_SHADE_65D6BF16
 // Light reflected by a surface that is made of strands, after Banks.
 //   t           strand tangent, root to tip; unit vector
 //   n           surface normal; unit vector
@@ -1040,7 +1228,10 @@ vec3 vair_banks_shade(vec3 t, vec3 n, vec3 l, vec3 v, vec3 k_diffuse, vec3 k_spe
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_ANGLES_HALF_921AC4CC
+#define VAIR_STRAND_ANGLES_HALF_921AC4CC
 // Angles of a light and a viewer to a strand by half angles: everything from four squared lengths.
 // Variant of vair_strand_angles.
 //   t           strand tangent, root to tip; unit vector
@@ -1074,7 +1265,10 @@ vair_StrandAngles vair_strand_angles_half(vec3 t, vec3 l, vec3 v) {
     float along = cos_l + cos_v;
     return vair_StrandAngles(cos_l, cos_v, sin_l, sin_v, 0.5 * (across * across + along * along));
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_FROM4_3469067C
+#define VAIR_KAJIYA_KAY_SHADE_FROM4_3469067C
 // Light reflected by a free strand, for exponents from 4 on, without a logarithm. Variant of
 // vair_kajiya_kay_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1095,7 +1289,10 @@ vec3 vair_kajiya_kay_shade_from4(vec3 t, vec3 l, vec3 v, vec3 k_diffuse, vec3 k_
     return angles.sin_l * k_diffuse + vair_pow_one_minus_from4(angles.defect, exponent)
         * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_FROM4_CC6CEE15
+#define VAIR_BANKS_SHADE_FROM4_CC6CEE15
 // Light reflected by a surface that is made of strands, for exponents from 4 on, without a
 // logarithm. Variant of vair_banks_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1117,7 +1314,10 @@ vec3 vair_banks_shade_from4(vec3 t, vec3 n, vec3 l, vec3 v, vec3 k_diffuse, vec3
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade_from4(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_FROM8_A69C16D7
+#define VAIR_KAJIYA_KAY_SHADE_FROM8_A69C16D7
 // Light reflected by a free strand, for exponents from 8 on, by one exponential. Variant of
 // vair_kajiya_kay_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1138,7 +1338,10 @@ vec3 vair_kajiya_kay_shade_from8(vec3 t, vec3 l, vec3 v, vec3 k_diffuse, vec3 k_
     return angles.sin_l * k_diffuse + vair_pow_one_minus_from8(angles.defect, exponent)
         * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_FROM8_99B14CED
+#define VAIR_BANKS_SHADE_FROM8_99B14CED
 // Light reflected by a surface that is made of strands, for exponents from 8 on, by one
 // exponential. Variant of vair_banks_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1160,7 +1363,10 @@ vec3 vair_banks_shade_from8(vec3 t, vec3 n, vec3 l, vec3 v, vec3 k_diffuse, vec3
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade_from8(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_CUBIC8_FB4A6C50
+#define VAIR_KAJIYA_KAY_SHADE_CUBIC8_FB4A6C50
 // Light reflected by a free strand, for exponents from 8 on, by polynomials. Variant of
 // vair_kajiya_kay_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1181,7 +1387,10 @@ vec3 vair_kajiya_kay_shade_cubic8(vec3 t, vec3 l, vec3 v, vec3 k_diffuse, vec3 k
     return angles.sin_l * k_diffuse + vair_pow_one_minus_cubic8(angles.defect, exponent)
         * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_CUBIC8_52D5E464
+#define VAIR_BANKS_SHADE_CUBIC8_52D5E464
 // Light reflected by a surface that is made of strands, for exponents from 8 on, by polynomials.
 // Variant of vair_banks_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1203,7 +1412,10 @@ vec3 vair_banks_shade_cubic8(vec3 t, vec3 n, vec3 l, vec3 v, vec3 k_diffuse, vec
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade_cubic8(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_TANGENT_FROM_MAP_A858C41D
+#define VAIR_TANGENT_FROM_MAP_A858C41D
 // Per-pixel strand tangent of a brushed surface.
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
@@ -1225,7 +1437,10 @@ vec3 vair_tangent_from_map(vec3 n, vec3 t, vec3 map_tangent) {
     vec2 unit = squared > 1e-37 ? inversesqrt(max(squared, 1e-37)) * texel : vec2(1.0, 0.0);
     return unit.x * frame.tangent + unit.y * frame.bitangent;
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_39A51AE0
+#define VAIR_BRUSHED_SHADE_39A51AE0
 // Light reflected by a brushed surface: strand lighting with a tangent from a texture, per pixel.
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
@@ -1252,7 +1467,10 @@ vec3 vair_brushed_shade(vec3 n, vec3 t, vec3 map_tangent, vec3 l, vec3 v, vec3 k
     vec3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_FROM4_CF3F9563
+#define VAIR_BRUSHED_SHADE_FROM4_CF3F9563
 // Light reflected by a brushed surface, for exponents from 4 on, without a logarithm. Variant of
 // vair_brushed_shade.
 //   n            surface normal; unit vector
@@ -1275,7 +1493,10 @@ vec3 vair_brushed_shade_from4(vec3 n, vec3 t, vec3 map_tangent, vec3 l, vec3 v, 
     vec3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade_from4(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_FROM8_BCDA42DA
+#define VAIR_BRUSHED_SHADE_FROM8_BCDA42DA
 // Light reflected by a brushed surface, for exponents from 8 on, by one exponential. Variant of
 // vair_brushed_shade.
 //   n            surface normal; unit vector
@@ -1298,7 +1519,10 @@ vec3 vair_brushed_shade_from8(vec3 n, vec3 t, vec3 map_tangent, vec3 l, vec3 v, 
     vec3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade_from8(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_CUBIC8_91B868DE
+#define VAIR_BRUSHED_SHADE_CUBIC8_91B868DE
 // Light reflected by a brushed surface, for exponents from 8 on, by polynomials. Variant of
 // vair_brushed_shade.
 //   n            surface normal; unit vector
@@ -1321,7 +1545,10 @@ vec3 vair_brushed_shade_cubic8(vec3 n, vec3 t, vec3 map_tangent, vec3 l, vec3 v,
     vec3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade_cubic8(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_COAT_EXTINCTION_1F26461F
+#define VAIR_COAT_EXTINCTION_1F26461F
 // Extinction coefficient of a coat that absorbs the fraction rho per unit length.
 //   rho         fraction of light lost along a path of length 1, in [0, 1]; Banks uses 0.02
 //   returns     -log(1 - rho) per unit length, at least 0
@@ -1336,7 +1563,10 @@ float vair_coat_extinction(float rho) {
     float inside = -vair_log_one_minus(min(rho, 0.99999994));
     return rho < 1.0 ? inside : 1e18;
 }
+#endif
 
+#ifndef VAIR_COAT_EXTINCTION_DIRECT_C25D4D91
+#define VAIR_COAT_EXTINCTION_DIRECT_C25D4D91
 // Extinction coefficient of a coat, as written: a small absolute error. Variant of
 // vair_coat_extinction.
 //   rho         fraction of light lost along a path of length 1, in [0, 1]
@@ -1352,7 +1582,10 @@ float vair_coat_extinction_direct(float rho) {
     float inside = -log(max(1.0 - rho, 1.2e-38));
     return rho < 1.0 ? inside : 1e18;
 }
+#endif
 
+#ifndef VAIR_COAT_EXTINCTION_THIN_ECB1C068
+#define VAIR_COAT_EXTINCTION_THIN_ECB1C068
 // Extinction coefficient of a coat that loses at most half the light per unit length, to 0.05
 // percent. Variant of vair_coat_extinction.
 //   rho         fraction of light lost along a path of length 1, in [0, 0.5]
@@ -1364,7 +1597,10 @@ float vair_coat_extinction_direct(float rho) {
 float vair_coat_extinction_thin(float rho) {
     return -vair_log_one_minus_thin(rho);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_BANKS_F84816AB
+#define VAIR_COAT_PATH_BANKS_F84816AB
 // Way of light through a coat of strands that lie along the surface, as the lecture writes it.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
 //               1000000]
@@ -1381,7 +1617,10 @@ float vair_coat_extinction_thin(float rho) {
 float vair_coat_path_banks(float depth, vec3 t, vec3 l) {
     return min(depth / max(vair_sin_angle(t, l), 1e-30), 1e18);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_SLAB_94F9BB7B
+#define VAIR_COAT_PATH_SLAB_94F9BB7B
 // Way of light through a coat that is a flat layer over the surface.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
 //               1000000]
@@ -1400,7 +1639,10 @@ float vair_coat_path_banks(float depth, vec3 t, vec3 l) {
 float vair_coat_path_slab(float depth, vec3 n, vec3 l) {
     return min(depth / max(dot(n, l), 1e-30), 1e18);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_BANKS_HALF_0F4F3F01
+#define VAIR_COAT_PATH_BANKS_HALF_0F4F3F01
 // Way of light through a coat of strands that lie along the surface, for light off the strand's
 // axis. Variant of vair_coat_path_banks.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
@@ -1417,7 +1659,10 @@ float vair_coat_path_slab(float depth, vec3 n, vec3 l) {
 float vair_coat_path_banks_half(float depth, vec3 t, vec3 l) {
     return min(depth / max(vair_sin_angle_half(t, l), 1e-30), 1e18);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_BANKS_CROSS_326F599D
+#define VAIR_COAT_PATH_BANKS_CROSS_326F599D
 // Way of light through a coat of strands that lie along the surface, for light off the strand's
 // axis. Variant of vair_coat_path_banks.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
@@ -1434,7 +1679,10 @@ float vair_coat_path_banks_half(float depth, vec3 t, vec3 l) {
 float vair_coat_path_banks_cross(float depth, vec3 t, vec3 l) {
     return min(depth / max(vair_sin_angle_cross(t, l), 1e-30), 1e18);
 }
+#endif
 
+#ifndef VAIR_COAT_TRANSMITTANCE_5AE7C686
+#define VAIR_COAT_TRANSMITTANCE_5AE7C686
 // Fraction of light that passes a coat: e^-(extinction path).
 //   extinction  extinction coefficient, per scene unit, in [0, 1e18]; see vair_coat_extinction
 //   path        length of the way, in scene units, in [0, 1e18]; see vair_coat_path_slab
@@ -1448,7 +1696,10 @@ float vair_coat_path_banks_cross(float depth, vec3 t, vec3 l) {
 float vair_coat_transmittance(float extinction, float path) {
     return exp(-min(extinction * path, 80.0));
 }
+#endif
 
+#ifndef VAIR_COAT_TRANSMITTANCE_CUBIC16_64F8B77F
+#define VAIR_COAT_TRANSMITTANCE_CUBIC16_64F8B77F
 // Fraction of light that passes a coat, as the sixteenth power of a cubic: 7e-6, without
 // exponential. Variant of vair_coat_transmittance.
 //   extinction  extinction coefficient, per scene unit, in [0, 1e18]
@@ -1467,7 +1718,10 @@ float vair_coat_transmittance_cubic16(float extinction, float path) {
     float r8 = r4 * r4;
     return r8 * r8;
 }
+#endif
 
+#ifndef VAIR_EXP_NEG_QUADRATIC16_0D7EF849
+#define VAIR_EXP_NEG_QUADRATIC16_0D7EF849
 // e^-x as the sixteenth power of a quadratic.
 //   x        at least 0; in [0, 1e30]
 //   returns  e^-x to 2.3e-4 absolute, in (0, 1]
@@ -1481,7 +1735,10 @@ float vair_exp_neg_quadratic16(float x) {
     float r8 = r4 * r4;
     return r8 * r8;
 }
+#endif
 
+#ifndef VAIR_COAT_TRANSMITTANCE_QUADRATIC16_16058ACA
+#define VAIR_COAT_TRANSMITTANCE_QUADRATIC16_16058ACA
 // Fraction of light that passes a coat, as the sixteenth power of a quadratic: 2.3e-4. Variant of
 // vair_coat_transmittance.
 //   extinction  extinction coefficient, per scene unit, in [0, 1e18]
@@ -1496,7 +1753,10 @@ float vair_exp_neg_quadratic16(float x) {
 float vair_coat_transmittance_quadratic16(float extinction, float path) {
     return vair_exp_neg_quadratic16(extinction * path);
 }
+#endif
 
+#ifndef VAIR_TANGENT_SHIFT_5C4A63CC
+#define VAIR_TANGENT_SHIFT_5C4A63CC
 // Strand tangent tilted toward the surface normal.
 //   t           strand tangent, root to tip; unit vector
 //   n           surface normal; unit vector
@@ -1515,7 +1775,10 @@ float vair_coat_transmittance_quadratic16(float extinction, float path) {
 vec3 vair_tangent_shift(vec3 t, vec3 n, float shift) {
     return vair_safe_normalize_dot(t + shift * n, t);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_B0546BC2
+#define VAIR_STRAND_SPECULAR_HALF_B0546BC2
 // Specular lobe of a strand after Scheuermann: sin(t, h)^exponent.
 //   t           strand tangent, root to tip; unit vector
 //   h           vair_half_vector of light and viewer; unit vector
@@ -1536,7 +1799,10 @@ float vair_strand_specular_half(vec3 t, vec3 h, float exponent) {
     float c = dot(t, h);
     return vair_pow_one_minus(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_HIGHLIGHT_0B8658AA
+#define VAIR_SCHEUERMANN_HIGHLIGHT_0B8658AA
 // One highlight of vair_scheuermann_shade.
 //   t         strand tangent, root to tip; unit vector
 //   n         surface normal; unit vector
@@ -1552,7 +1818,10 @@ float vair_scheuermann_highlight(vec3 t, vec3 n, vec3 h, float exponent, float s
     float s = clamp(1.0 + dot(shifted, h), 0.0, 1.0);
     return s * s * (3.0 - 2.0 * s) * vair_strand_specular_half(shifted, h, exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_9A39760D
+#define VAIR_SCHEUERMANN_SHADE_9A39760D
 // Light reflected by hair with a soft diffuse term and two shifted highlights, after Scheuermann.
 //   t                   strand tangent, root to tip; unit vector
 //   n                   surface normal; unit vector
@@ -1590,7 +1859,10 @@ vec3 vair_scheuermann_shade(vec3 t, vec3 n, vec3 l, vec3 v, vec3 base, vec3 prim
     float s2 = vair_scheuermann_highlight(t, n, h, secondary_exponent, secondary_shift);
     return base * (vec3(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_FADE_63E72D67
+#define VAIR_SCHEUERMANN_FADE_63E72D67
 // Factor by which vair_scheuermann_shade fades a highlight where h points back along the strand.
 //   t        strand tangent, shifted; unit vector
 //   h        vair_half_vector of light and viewer; unit vector
@@ -1601,7 +1873,10 @@ float vair_scheuermann_fade(vec3 t, vec3 h) {
     float s = clamp(1.0 + dot(t, h), 0.0, 1.0);
     return s * s * (3.0 - 2.0 * s);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_FROM4_577CAF9A
+#define VAIR_STRAND_SPECULAR_HALF_FROM4_577CAF9A
 // Half-vector lobe of a strand for exponents from 8 on, without a logarithm. Variant of
 // vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -1616,7 +1891,10 @@ float vair_strand_specular_half_from4(vec3 t, vec3 h, float exponent) {
     float c = dot(t, h);
     return vair_pow_one_minus_from4(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_FROM4_ED77900E
+#define VAIR_SCHEUERMANN_SHADE_FROM4_ED77900E
 // Light reflected by hair with two shifted highlights of exponents from 8 on, without logarithms.
 // Variant of vair_scheuermann_shade.
 //   t                   strand tangent, root to tip; unit vector
@@ -1652,7 +1930,10 @@ vec3 vair_scheuermann_shade_from4(vec3 t, vec3 n, vec3 l, vec3 v, vec3 base, vec
         * vair_strand_specular_half_from4(t2, h, secondary_exponent);
     return base * (vec3(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_FROM8_094B94E2
+#define VAIR_STRAND_SPECULAR_HALF_FROM8_094B94E2
 // Half-vector lobe of a strand for exponents from 16 on, by one exponential and without a division.
 // Variant of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -1667,7 +1948,10 @@ float vair_strand_specular_half_from8(vec3 t, vec3 h, float exponent) {
     float c = dot(t, h);
     return vair_pow_one_minus_from8(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_FROM8_F4CFA331
+#define VAIR_SCHEUERMANN_SHADE_FROM8_F4CFA331
 // Light reflected by hair with two shifted highlights of exponents from 16 on, by two exponentials.
 // Variant of vair_scheuermann_shade.
 //   t                   strand tangent, root to tip; unit vector
@@ -1703,7 +1987,10 @@ vec3 vair_scheuermann_shade_from8(vec3 t, vec3 n, vec3 l, vec3 v, vec3 base, vec
         * vair_strand_specular_half_from8(t2, h, secondary_exponent);
     return base * (vec3(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_CUBIC8_4B3C3488
+#define VAIR_STRAND_SPECULAR_HALF_CUBIC8_4B3C3488
 // Half-vector lobe of a strand for exponents from 16 on, without transcendental function or
 // division. Variant of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -1718,7 +2005,10 @@ float vair_strand_specular_half_cubic8(vec3 t, vec3 h, float exponent) {
     float c = dot(t, h);
     return vair_pow_one_minus_cubic8(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_CUBIC8_BA355750
+#define VAIR_SCHEUERMANN_SHADE_CUBIC8_BA355750
 // Light reflected by hair with two shifted highlights of exponents from 16 on, by polynomials.
 // Variant of vair_scheuermann_shade.
 //   t                   strand tangent, root to tip; unit vector
@@ -1754,7 +2044,10 @@ vec3 vair_scheuermann_shade_cubic8(vec3 t, vec3 n, vec3 l, vec3 v, vec3 base, ve
         * vair_strand_specular_half_cubic8(t2, h, secondary_exponent);
     return base * (vec3(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_STRAND_ANGLES_COSINE_CA4253B5
+#define VAIR_STRAND_ANGLES_COSINE_CA4253B5
 // Angles of a light and a viewer to a strand from their cosines: for directions away from the
 // strand. Variant of vair_strand_angles.
 //   t           strand tangent, root to tip; unit vector
@@ -1778,7 +2071,10 @@ vair_StrandAngles vair_strand_angles_cosine(vec3 t, vec3 l, vec3 v) {
     float along = cos_l + cos_v;
     return vair_StrandAngles(cos_l, cos_v, sin_l, sin_v, 0.5 * (across * across + along * along));
 }
+#endif
 
+#ifndef VAIR_STRAND_AZIMUTH_COSINE_33AFB849
+#define VAIR_STRAND_AZIMUTH_COSINE_33AFB849
 // Cosine kappa of the angle between light and viewer around a strand.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1802,7 +2098,10 @@ float vair_strand_azimuth_cosine(vec3 t, vec3 l, vec3 v) {
         * inversesqrt(max(squares, 1e-37));
     return clamp(kappa, -1.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_AZIMUTH_COSINE_CROSS_896987AC
+#define VAIR_STRAND_AZIMUTH_COSINE_CROSS_896987AC
 // Cosine of the angle between light and viewer around a strand, by plain cross products. Variant of
 // vair_strand_azimuth_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1824,7 +2123,10 @@ float vair_strand_azimuth_cosine_cross(vec3 t, vec3 l, vec3 v) {
     float kappa = 1.1529215e18 * dot(a, b) * inversesqrt(max(squares, 1e-37));
     return clamp(kappa, -1.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_AZIMUTH_COSINE_DOTS_FABB3109
+#define VAIR_STRAND_AZIMUTH_COSINE_DOTS_FABB3109
 // Cosine of the angle between light and viewer around a strand, from three inner products. Variant
 // of vair_strand_azimuth_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1845,7 +2147,10 @@ float vair_strand_azimuth_cosine_dots(vec3 t, vec3 l, vec3 v) {
     float squares = (1.0 - cos_l * cos_l) * (1.0 - cos_v * cos_v);
     return clamp((dot(l, v) - cos_l * cos_v) * inversesqrt(max(squares, 1e-37)), -1.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_DEFECT_6E419F84
+#define VAIR_STRAND_DEFECT_6E419F84
 // Defect 1 - vair_strand_cosine of a strand.
 //   t        strand tangent, root to tip; unit vector
 //   l        direction to the light; unit vector
@@ -1858,7 +2163,10 @@ float vair_strand_defect(vec3 t, vec3 l, vec3 v) {
     float along = dot(t, l + v);
     return 0.5 * (across * across + along * along);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_F8DED68A
+#define VAIR_STRAND_COSINE_F8DED68A
 // Largest cosine between v and a mirror direction of l, over all unit normals orthogonal to the
 // strand.
 //   t           strand tangent, root to tip; unit vector
@@ -1873,7 +2181,10 @@ float vair_strand_defect(vec3 t, vec3 l, vec3 v) {
 float vair_strand_cosine(vec3 t, vec3 l, vec3 v) {
     return 1.0 - vair_strand_defect(t, l, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_DIRECT_465B1C50
+#define VAIR_STRAND_COSINE_DIRECT_465B1C50
 // Strand cosine with sines taken from the cosines: the obvious form, with one root. Variant of
 // vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1892,7 +2203,10 @@ float vair_strand_cosine_direct(vec3 t, vec3 l, vec3 v) {
     float sines = sqrt(max((1.0 - cos_l * cos_l) * (1.0 - cos_v * cos_v), 0.0));
     return sines - cos_l * cos_v;
 }
+#endif
 
+#ifndef VAIR_STRAND_DEFECT_HALF_1CAD43DA
+#define VAIR_STRAND_DEFECT_HALF_1CAD43DA
 // Defect 1 - vair_strand_cosine of a strand by half angles: a square, from four squared lengths.
 //   t        strand tangent, root to tip; unit vector
 //   l        direction to the light; unit vector
@@ -1913,7 +2227,10 @@ float vair_strand_defect_half(vec3 t, vec3 l, vec3 v) {
     float gap = cosines - sines;
     return 0.125 * (gap * gap);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_HALF_7BD8DD9A
+#define VAIR_STRAND_COSINE_HALF_7BD8DD9A
 // Strand cosine by half angles, from four squared lengths. Variant of vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1927,7 +2244,10 @@ float vair_strand_defect_half(vec3 t, vec3 l, vec3 v) {
 float vair_strand_cosine_half(vec3 t, vec3 l, vec3 v) {
     return 1.0 - vair_strand_defect_half(t, l, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_BANKS_PRINTED_0BB5BD65
+#define VAIR_STRAND_COSINE_BANKS_PRINTED_0BB5BD65
 // Strand cosine as the lecture prints it for Banks: the exact negative of the right value. As the
 // lecture prints it; right: vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1943,7 +2263,10 @@ float vair_strand_cosine_half(vec3 t, vec3 l, vec3 v) {
 float vair_strand_cosine_banks_printed(vec3 t, vec3 l, vec3 v) {
     return dot(t, l) * dot(t, v) - vair_sin_angle(t, l) * vair_sin_angle(t, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_KAJIYA_PRINTED_628EFCB4
+#define VAIR_STRAND_COSINE_KAJIYA_PRINTED_628EFCB4
 // Strand cosine as the lecture prints it for Kajiya and Kay: right only where l or v points inward.
 // As the lecture prints it; right: vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1958,7 +2281,10 @@ float vair_strand_cosine_banks_printed(vec3 t, vec3 l, vec3 v) {
 float vair_strand_cosine_kajiya_printed(vec3 t, vec3 l, vec3 v) {
     return dot(t, l) * dot(t, v) + vair_sin_angle(t, l) * vair_sin_angle(t, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_919F1562
+#define VAIR_STRAND_DIFFUSE_919F1562
 // Diffuse factor of a thin cylinder: the sine of the angle between strand and light.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1974,7 +2300,10 @@ float vair_strand_cosine_kajiya_printed(vec3 t, vec3 l, vec3 v) {
 float vair_strand_diffuse(vec3 t, vec3 l) {
     return vair_sin_angle(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_HALF_A642757F
+#define VAIR_STRAND_DIFFUSE_HALF_A642757F
 // Diffuse factor of a thin cylinder by half angles: one root, good to 1e-4 rad. Variant of
 // vair_strand_diffuse.
 //   t           strand tangent, root to tip; unit vector
@@ -1989,7 +2318,10 @@ float vair_strand_diffuse(vec3 t, vec3 l) {
 float vair_strand_diffuse_half(vec3 t, vec3 l) {
     return vair_sin_angle_half(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_CROSS_7AF2B8AA
+#define VAIR_STRAND_DIFFUSE_CROSS_7AF2B8AA
 // Diffuse factor of a thin cylinder by the cross product: an absolute error of 1e-7. Variant of
 // vair_strand_diffuse.
 //   t           strand tangent, root to tip; unit vector
@@ -2004,7 +2336,10 @@ float vair_strand_diffuse_half(vec3 t, vec3 l) {
 float vair_strand_diffuse_cross(vec3 t, vec3 l) {
     return vair_sin_angle_cross(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_COSINE_FA2C7AC3
+#define VAIR_STRAND_DIFFUSE_COSINE_FA2C7AC3
 // Diffuse factor of a thin cylinder by the cosine: up to 9e-4 off along the strand. Variant of
 // vair_strand_diffuse.
 //   t           strand tangent, root to tip; unit vector
@@ -2019,7 +2354,10 @@ float vair_strand_diffuse_cross(vec3 t, vec3 l) {
 float vair_strand_diffuse_cosine(vec3 t, vec3 l) {
     return vair_sin_angle_cosine(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_8CDC1555
+#define VAIR_STRAND_SPECULAR_8CDC1555
 // Specular lobe of a strand: max(0, vair_strand_cosine)^exponent.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -2040,7 +2378,10 @@ float vair_strand_diffuse_cosine(vec3 t, vec3 l) {
 float vair_strand_specular(vec3 t, vec3 l, vec3 v, float exponent) {
     return vair_pow_one_minus(vair_strand_defect(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_FROM4_B0245F71
+#define VAIR_STRAND_SPECULAR_FROM4_B0245F71
 // Specular lobe of a strand for exponents from 4 on, without a logarithm. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2057,7 +2398,10 @@ float vair_strand_specular(vec3 t, vec3 l, vec3 v, float exponent) {
 float vair_strand_specular_from4(vec3 t, vec3 l, vec3 v, float exponent) {
     return vair_pow_one_minus_from4(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_GAUSS_0B6EF83E
+#define VAIR_STRAND_SPECULAR_GAUSS_0B6EF83E
 // Specular lobe of a strand for exponents from 8 on, by one exponential. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2073,7 +2417,10 @@ float vair_strand_specular_from4(vec3 t, vec3 l, vec3 v, float exponent) {
 float vair_strand_specular_gauss(vec3 t, vec3 l, vec3 v, float exponent) {
     return vair_pow_one_minus_gauss(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_SQ16_93512F8D
+#define VAIR_STRAND_SPECULAR_SQ16_93512F8D
 // Specular lobe of a strand for exponents from 8 on, without a transcendental function. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2090,7 +2437,10 @@ float vair_strand_specular_gauss(vec3 t, vec3 l, vec3 v, float exponent) {
 float vair_strand_specular_sq16(vec3 t, vec3 l, vec3 v, float exponent) {
     return vair_pow_one_minus_sq16(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_FROM8_B21BEB0C
+#define VAIR_STRAND_SPECULAR_FROM8_B21BEB0C
 // Specular lobe of a strand for exponents from 8 on, by one exponential and without a division.
 // Variant of vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2105,7 +2455,10 @@ float vair_strand_specular_sq16(vec3 t, vec3 l, vec3 v, float exponent) {
 float vair_strand_specular_from8(vec3 t, vec3 l, vec3 v, float exponent) {
     return vair_pow_one_minus_from8(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_CUBIC8_AAFE96FE
+#define VAIR_STRAND_SPECULAR_CUBIC8_AAFE96FE
 // Specular lobe of a strand for exponents from 8 on, without transcendental function or division.
 // Variant of vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2121,7 +2474,10 @@ float vair_strand_specular_from8(vec3 t, vec3 l, vec3 v, float exponent) {
 float vair_strand_specular_cubic8(vec3 t, vec3 l, vec3 v, float exponent) {
     return vair_pow_one_minus_cubic8(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_DIRECT_2058F9C1
+#define VAIR_STRAND_SPECULAR_DIRECT_2058F9C1
 // Specular lobe of a strand as usually written: a power of the cosine. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2140,7 +2496,10 @@ float vair_strand_specular_cubic8(vec3 t, vec3 l, vec3 v, float exponent) {
 float vair_strand_specular_direct(vec3 t, vec3 l, vec3 v, float exponent) {
     return vair_safe_pow_exp2(vair_strand_cosine_direct(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_GAUSS_63597980
+#define VAIR_STRAND_SPECULAR_HALF_GAUSS_63597980
 // Half-vector lobe of a strand for exponents from 16 on, by one exponential. Variant of
 // vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -2156,7 +2515,10 @@ float vair_strand_specular_half_gauss(vec3 t, vec3 h, float exponent) {
     float c = dot(t, h);
     return vair_pow_one_minus_gauss(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_SQ16_016DEE23
+#define VAIR_STRAND_SPECULAR_HALF_SQ16_016DEE23
 // Half-vector lobe of a strand for exponents from 16 on, without a transcendental function. Variant
 // of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -2172,7 +2534,10 @@ float vair_strand_specular_half_sq16(vec3 t, vec3 h, float exponent) {
     float c = dot(t, h);
     return vair_pow_one_minus_sq16(c * c, 0.5 * exponent);
 }
+#endif
 
+#ifndef VAIR_TANGENT_FROM_MAP_APART_75A47946
+#define VAIR_TANGENT_FROM_MAP_APART_75A47946
 // Per-pixel strand tangent of a brushed surface, for tangents that are well off the normal. Variant
 // of vair_tangent_from_map.
 //   n            surface normal; unit vector
@@ -2194,7 +2559,10 @@ vec3 vair_tangent_from_map_apart(vec3 n, vec3 t, vec3 map_tangent) {
     vec2 unit = squared > 1e-37 ? inversesqrt(max(squared, 1e-37)) * texel : vec2(1.0, 0.0);
     return unit.x * frame.tangent + unit.y * frame.bitangent;
 }
+#endif
 
+#ifndef VAIR_TANGENT_FROM_MAP_ORTHOGONAL_5AB6141F
+#define VAIR_TANGENT_FROM_MAP_ORTHOGONAL_5AB6141F
 // Per-pixel strand tangent of a brushed surface, for tangents that are orthogonal to the normal
 // already. Variant of vair_tangent_from_map.
 //   n            surface normal; unit vector
@@ -2215,7 +2583,10 @@ vec3 vair_tangent_from_map_orthogonal(vec3 n, vec3 t, vec3 map_tangent) {
     vec2 unit = squared > 1e-37 ? inversesqrt(max(squared, 1e-37)) * texel : vec2(1.0, 0.0);
     return unit.x * frame.tangent + unit.y * frame.bitangent;
 }
+#endif
 
+#ifndef VAIR_TANGENT_SHIFT_APART_540A2FFB
+#define VAIR_TANGENT_SHIFT_APART_540A2FFB
 // Strand tangent tilted toward the surface normal, where the sum is not zero. Variant of
 // vair_tangent_shift.
 //   t           strand tangent, root to tip; unit vector
@@ -2231,7 +2602,10 @@ vec3 vair_tangent_from_map_orthogonal(vec3 n, vec3 t, vec3 map_tangent) {
 vec3 vair_tangent_shift_apart(vec3 t, vec3 n, float shift) {
     return vair_safe_normalize_nonzero(t + shift * n, t);
 }
+#endif
 
+#ifndef VAIR_TANGENT_SHIFT_ORTHOGONAL_ABAD7EAA
+#define VAIR_TANGENT_SHIFT_ORTHOGONAL_ABAD7EAA
 // Strand tangent tilted toward a surface normal that is orthogonal to it. Variant of
 // vair_tangent_shift.
 //   t           strand tangent, root to tip; orthogonal to n; unit vector
@@ -2247,7 +2621,10 @@ vec3 vair_tangent_shift_apart(vec3 t, vec3 n, float shift) {
 vec3 vair_tangent_shift_orthogonal(vec3 t, vec3 n, float shift) {
     return inversesqrt(1.0 + shift * shift) * (t + shift * n);
 }
+#endif
 
+#ifndef VAIR_FUR_HAIR_AREA_AE74F5CB
+#define VAIR_FUR_HAIR_AREA_AE74F5CB
 // Silhouette area of one hair, a truncated cone, seen from the side.
 //   hair_length  length of the hair; in [0, 1000]
 //   radius_base  radius at the skin; in [0, 10]
@@ -2262,7 +2639,10 @@ vec3 vair_tangent_shift_orthogonal(vec3 t, vec3 n, float shift) {
 float vair_fur_hair_area(float hair_length, float radius_base, float radius_tip) {
     return hair_length * (radius_base + radius_tip);
 }
+#endif
 
+#ifndef VAIR_FUR_SLAB_DEPTH_5F3EA5BF
+#define VAIR_FUR_SLAB_DEPTH_5F3EA5BF
 // Optical depth from quantities that a caller already has.
 //   hair_cover  hair area that stands on a unit of skin: density times area of a hair; in [0, 2e13]
 //   sine        sine of the angle between the direction and the hairs; in [0, 1]
@@ -2274,7 +2654,10 @@ float vair_fur_hair_area(float hair_length, float radius_base, float radius_tip)
 float vair_fur_slab_depth(float hair_cover, float sine, float cosine) {
     return min(hair_cover * sine / max(cosine, 1e-12), 1e9);
 }
+#endif
 
+#ifndef VAIR_FUR_GEOMETRY_FB036E29
+#define VAIR_FUR_GEOMETRY_FB036E29
 // Angles and optical depths of a coat for one light.
 //   coat        geometry of the coat
 //   t           hair direction, root to tip; unit vector
@@ -2308,7 +2691,10 @@ vair_FurGeometry vair_fur_geometry(vair_FurCoat coat, vec3 t, vec3 n, vec3 l, ve
         vair_fur_slab_depth(hair_cover, sin_v, dot(n, v)),
         vair_fur_slab_depth(hair_cover, sin_l, n_dot_l));
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_1A661678
+#define VAIR_FUR_WEIGHTS_GOLDMAN_1A661678
 // Weights of hair and skin by Goldman's rule: opacity along the view times shadow along the light.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
 //   depth_light  optical depth of the coat along the light; in [0, 1e9]
@@ -2334,7 +2720,10 @@ vair_FurWeights vair_fur_weights_goldman(float depth_view, float depth_light, fl
     float hair = opacity * (1.0 - overlap + overlap * clear_light);
     return vair_FurWeights(hair, clear_view * clear_light);
 }
+#endif
 
+#ifndef VAIR_FUR_DIRECTIONAL_ATTENUATION_A0E3CFC1
+#define VAIR_FUR_DIRECTIONAL_ATTENUATION_A0E3CFC1
 // Attenuation f_dir of a hair: rho_reflect when front lit, rho_transmit when back lit.
 //   azimuth_cosine  cosine of the angle between light and viewer around the hair, see
 //                   vair_strand_azimuth_cosine; in [-1, 1]
@@ -2351,7 +2740,10 @@ float vair_fur_directional_attenuation(float azimuth_cosine, float rho_reflect,
     float rho_transmit) {
     return 0.5 * (rho_reflect + rho_transmit) + 0.5 * azimuth_cosine * (rho_reflect - rho_transmit);
 }
+#endif
 
+#ifndef VAIR_FUR_SURFACE_ATTENUATION_DD7F0E96
+#define VAIR_FUR_SURFACE_ATTENUATION_DD7F0E96
 // Attenuation f_surface of hairs on the side that is turned away from the light.
 //   n_dot_l      cosine between surface normal and light; in [-1, 1]
 //   rho_surface  strength of the shadow; 0 gives 1 everywhere; in [0, 1]
@@ -2370,7 +2762,10 @@ float vair_fur_surface_attenuation(float n_dot_l, float rho_surface, float cos_d
     float cos_lit) {
     return 1.0 + rho_surface * (vair_safe_smoothstep(cos_dark, cos_lit, n_dot_l) - 1.0);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_BLEND_17E86280
+#define VAIR_FAKEFUR_BLEND_17E86280
 // Hair and skin, each attenuated and weighted, under one light.
 //   optics     optical properties of the hairs
 //   geometry   directions and depths, see vair_fur_geometry
@@ -2391,7 +2786,10 @@ vec3 vair_fakefur_blend(vair_FurOptics optics, vair_FurGeometry geometry, vair_F
     vec3 hair = optics.k_diffuse * geometry.sin_l + optics.k_specular * highlight;
     return light * (hair * (weights.hair * directional * surface) + skin * weights.skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_78533C2C
+#define VAIR_FAKEFUR_SHADE_78533C2C
 // Light that a fur coat sends to the viewer under one light, by Goldman's model.
 //   coat        geometry of the coat
 //   optics      optical properties of the hairs
@@ -2430,7 +2828,10 @@ vec3 vair_fakefur_shade(vair_FurCoat coat, vair_FurOptics optics, vec3 t, vec3 n
     float highlight = vair_pow_one_minus(geometry.defect, optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_FROM4_59E6BD48
+#define VAIR_FAKEFUR_SHADE_FROM4_59E6BD48
 // Goldman's model for highlights of exponent 4 and more, without a logarithm. Variant of
 // vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2458,7 +2859,10 @@ vec3 vair_fakefur_shade_from4(vair_FurCoat coat, vair_FurOptics optics, vec3 t, 
     float highlight = vair_pow_one_minus_from4(geometry.defect, optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_C1A9EECA
+#define VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_C1A9EECA
 // Goldman's weights without an exponential and with one division. Variant of
 // vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -2481,7 +2885,10 @@ vair_FurWeights vair_fur_weights_goldman_rational(float depth_view, float depth_
     float hair = growth_view * (1.0 + (1.0 - overlap) * growth_light) * skin;
     return vair_FurWeights(hair, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_RATIONAL_SQ16_E10ACAA1
+#define VAIR_FAKEFUR_SHADE_RATIONAL_SQ16_E10ACAA1
 // Goldman's model for highlights of exponent 16 and more, without exponential or logarithm. Variant
 // of vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2510,7 +2917,10 @@ vec3 vair_fakefur_shade_rational_sq16(vair_FurCoat coat, vair_FurOptics optics, 
     float highlight = vair_pow_one_minus_sq16(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_SLAB_7744076D
+#define VAIR_FUR_WEIGHTS_SLAB_7744076D
 // Weights of hair and skin in a uniform coat whose hairs scatter the light once.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
 //   depth_light  optical depth of the coat along the light; in [0, 1e9]
@@ -2535,7 +2945,10 @@ vair_FurWeights vair_fur_weights_slab(float depth_view, float depth_light) {
     float mean = depth < 0.7 ? series : (1.0 - clear) / max(depth, 0.7);
     return vair_FurWeights(depth_view * mean, clear);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_7F5E8408
+#define VAIR_FAKEFUR_SHADE_SLAB_7F5E8408
 // Fake fur with the exact weights of a uniform coat instead of Goldman's rule: another model.
 // Variant of vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2570,7 +2983,10 @@ vec3 vair_fakefur_shade_slab(vair_FurCoat coat, vair_FurOptics optics, vec3 t, v
     float highlight = vair_pow_one_minus(geometry.defect, optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_SLAB_RATIONAL_B07E06B5
+#define VAIR_FUR_WEIGHTS_SLAB_RATIONAL_B07E06B5
 // Weights of the uniform coat without an exponential and with one division. Variant of
 // vair_fur_weights_slab.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -2590,7 +3006,10 @@ vair_FurWeights vair_fur_weights_slab_rational(float depth_view, float depth_lig
     float skin = 1.0 / (1.0 + depth * growth);
     return vair_FurWeights(depth_view * growth * skin, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_SQ16_1A346127
+#define VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_SQ16_1A346127
 // Fake fur of a uniform coat for highlights of exponent 16 and more, without exponential or
 // logarithm. Variant of vair_fakefur_shade_slab.
 //   coat        geometry of the coat
@@ -2618,7 +3037,10 @@ vec3 vair_fakefur_shade_slab_rational_sq16(vair_FurCoat coat, vair_FurOptics opt
     float highlight = vair_pow_one_minus_sq16(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_HAIR_AREA_PRINTED_71A02D36
+#define VAIR_FUR_HAIR_AREA_PRINTED_71A02D36
 // Area of a hair as the lecture prints it: half the silhouette, right only if its radii mean
 // diameters. As the lecture prints it; right: vair_fur_hair_area.
 //   hair_length  length of the hair; in [0, 1000]
@@ -2632,7 +3054,10 @@ vec3 vair_fakefur_shade_slab_rational_sq16(vair_FurCoat coat, vair_FurOptics opt
 float vair_fur_hair_area_printed(float hair_length, float radius_base, float radius_tip) {
     return hair_length * (radius_base + radius_tip) * 0.5;
 }
+#endif
 
+#ifndef VAIR_FUR_OBLIQUITY_FA97D8F2
+#define VAIR_FUR_OBLIQUITY_FA97D8F2
 // Ratio of a coat's optical depth along w to the hair area that stands on a unit of skin.
 //   t           hair direction; unit vector
 //   n           surface normal; unit vector
@@ -2650,7 +3075,10 @@ float vair_fur_hair_area_printed(float hair_length, float radius_base, float rad
 float vair_fur_obliquity(vec3 t, vec3 n, vec3 w) {
     return vair_sin_angle(w, t) / max(dot(w, n), 1e-12);
 }
+#endif
 
+#ifndef VAIR_TURN_OF_C7BF1DDA
+#define VAIR_TURN_OF_C7BF1DDA
 // Angle of the point (x, y) from the x axis as a share of a full turn: atan2(y, x) / (2 pi).
 //   y           second coordinate; in [-1e30, 1e30]
 //   x           first coordinate; in [-1e30, 1e30]
@@ -2676,7 +3104,10 @@ float vair_turn_of(float y, float x) {
     float upper = x < 0.0 ? 0.5 - quadrant : quadrant;
     return y < 0.0 ? -upper : upper;
 }
+#endif
 
+#ifndef VAIR_ANGLE_OF_COSINE_E0A624C5
+#define VAIR_ANGLE_OF_COSINE_E0A624C5
 // Angle whose cosine is x.
 //   x        cosine, in [-1, 1]
 //   returns  acos(x), in [0, pi]
@@ -2686,7 +3117,10 @@ float vair_turn_of(float y, float x) {
 float vair_angle_of_cosine(float x) {
     return 6.2831855 * vair_turn_of(vair_safe_sqrt((1.0 - x) * (1.0 + x)), x);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_PRINTED_017252EB
+#define VAIR_FAKEFUR_SHADE_PRINTED_017252EB
 // Goldman's model as the lecture prints it, misprints included. As the lecture prints it; right:
 // vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2724,7 +3158,10 @@ vec3 vair_fakefur_shade_printed(vair_FurCoat coat, vair_FurOptics optics, vec3 t
     vec3 hair = bare * ((1.0 - 0.5 * opacity) * directional * surface);
     return light * (hair * opacity + skin * ((1.0 - opacity) * (1.0 - opacity)));
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_RATIONAL_CUBIC8_6689C790
+#define VAIR_FAKEFUR_SHADE_RATIONAL_CUBIC8_6689C790
 // Goldman's model for highlights of exponent 8 and more, without exponential or logarithm. Variant
 // of vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2753,7 +3190,10 @@ vec3 vair_fakefur_shade_rational_cubic8(vair_FurCoat coat, vair_FurOptics optics
     float highlight = vair_pow_one_minus_cubic8(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_DOUBLING_SHORT_28AB4D26
+#define VAIR_FUR_WEIGHTS_GOLDMAN_DOUBLING_SHORT_28AB4D26
 // Goldman's weights without an exponential and without a division. Variant of
 // vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -2773,7 +3213,10 @@ vair_FurWeights vair_fur_weights_goldman_doubling_short(float depth_view, float 
     float hair = opacity_view * (1.0 - overlap * opacity_light);
     return vair_FurWeights(hair, (1.0 - opacity_view) * (1.0 - opacity_light));
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_DOUBLING_CUBIC8_A3E9683E
+#define VAIR_FAKEFUR_SHADE_DOUBLING_CUBIC8_A3E9683E
 // Goldman's model for highlights of exponent 8 and more, by polynomials alone. Variant of
 // vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2802,7 +3245,10 @@ vec3 vair_fakefur_shade_doubling_cubic8(vair_FurCoat coat, vair_FurOptics optics
     float highlight = vair_pow_one_minus_cubic8(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_FROM4_F9C613C2
+#define VAIR_FAKEFUR_SHADE_SLAB_FROM4_F9C613C2
 // Fake fur of a uniform coat for highlights of exponent 4 and more, without a logarithm. Variant of
 // vair_fakefur_shade_slab.
 //   coat        geometry of the coat
@@ -2829,7 +3275,10 @@ vec3 vair_fakefur_shade_slab_from4(vair_FurCoat coat, vair_FurOptics optics, vec
     float highlight = vair_pow_one_minus_from4(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_CUBIC8_ACB896E6
+#define VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_CUBIC8_ACB896E6
 // Fake fur of a uniform coat for highlights of exponent 8 and more, without exponential or
 // logarithm. Variant of vair_fakefur_shade_slab.
 //   coat        geometry of the coat
@@ -2858,7 +3307,10 @@ vec3 vair_fakefur_shade_slab_rational_cubic8(vair_FurCoat coat, vair_FurOptics o
     float highlight = vair_pow_one_minus_cubic8(min(geometry.defect, 1.9), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_AVERAGE_FDD5160F
+#define VAIR_FUR_AVERAGE_FDD5160F
 // Average hair geometry of a footprint from the mean of its unit hair directions.
 //   tangent_mean  mean of unit vectors, as the filtered (mip mapped) tangent map gives it; length
 //                 in [0, 1]
@@ -2876,7 +3328,10 @@ vair_FurAverage vair_fur_average(vec3 tangent_mean) {
     float m = clamp(length(tangent_mean), 0.001, 1.0);
     return vair_FurAverage(vair_safe_normalize(tangent_mean, vec3(0.0, 0.0, 1.0)), (1.0 - m) / m);
 }
+#endif
 
+#ifndef VAIR_FUR_DIRECTIONAL_ATTENUATION_BLEND_86EC234E
+#define VAIR_FUR_DIRECTIONAL_ATTENUATION_BLEND_86EC234E
 // Attenuation f_dir of a hair, as a step from rho_transmit towards rho_reflect. Variant of
 // vair_fur_directional_attenuation.
 //   azimuth_cosine  cosine of the angle between light and viewer around the hair, see
@@ -2894,7 +3349,10 @@ float vair_fur_directional_attenuation_blend(float azimuth_cosine, float rho_ref
     float rho_transmit) {
     return rho_transmit + (0.5 + 0.5 * azimuth_cosine) * (rho_reflect - rho_transmit);
 }
+#endif
 
+#ifndef VAIR_FUR_DIRECTIONAL_ATTENUATION_MEAN_2958CE44
+#define VAIR_FUR_DIRECTIONAL_ATTENUATION_MEAN_2958CE44
 // Attenuation f_dir of a hair whatever side it is seen from. Variant of
 // vair_fur_directional_attenuation.
 //   azimuth_cosine  not used: what computes it can be left out; in [-1, 1]
@@ -2911,7 +3369,10 @@ float vair_fur_directional_attenuation_mean(float azimuth_cosine, float rho_refl
     float rho_transmit) {
     return 0.5 * (rho_reflect + rho_transmit);
 }
+#endif
 
+#ifndef VAIR_FUR_OBLIQUITY_HALF_8E77C0C7
+#define VAIR_FUR_OBLIQUITY_HALF_8E77C0C7
 // Ratio of a coat's optical depth along w to the hair area below it, for w off the hairs. Variant
 // of vair_fur_obliquity.
 //   t           hair direction; unit vector
@@ -2926,7 +3387,10 @@ float vair_fur_directional_attenuation_mean(float azimuth_cosine, float rho_refl
 float vair_fur_obliquity_half(vec3 t, vec3 n, vec3 w) {
     return vair_sin_angle_half(w, t) / max(dot(w, n), 1e-12);
 }
+#endif
 
+#ifndef VAIR_FUR_OBLIQUITY_CROSS_69A2A57A
+#define VAIR_FUR_OBLIQUITY_CROSS_69A2A57A
 // Ratio of a coat's optical depth along w to the hair area below it, for w off the hairs. Variant
 // of vair_fur_obliquity.
 //   t           hair direction; unit vector
@@ -2941,7 +3405,10 @@ float vair_fur_obliquity_half(vec3 t, vec3 n, vec3 w) {
 float vair_fur_obliquity_cross(vec3 t, vec3 n, vec3 w) {
     return vair_sin_angle_cross(w, t) / max(dot(w, n), 1e-12);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_1B709355
+#define VAIR_FUR_OPACITY_1B709355
 // Share of the skin that is hidden by hairs.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
 //                  1e9]
@@ -2954,7 +3421,10 @@ float vair_fur_obliquity_cross(vec3 t, vec3 n, vec3 w) {
 float vair_fur_opacity(float optical_depth) {
     return vair_one_minus_exp_neg(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_RATIONAL_450A660D
+#define VAIR_FUR_OPACITY_RATIONAL_450A660D
 // Share of the skin that is hidden by hairs, as a ratio of polynomials. Variant of
 // vair_fur_opacity.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
@@ -2967,7 +3437,10 @@ float vair_fur_opacity(float optical_depth) {
 float vair_fur_opacity_rational(float optical_depth) {
     return vair_one_minus_exp_neg_rational(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_DOUBLING_SHORT_CE6DE24B
+#define VAIR_FUR_OPACITY_DOUBLING_SHORT_CE6DE24B
 // Share of the skin that is hidden by hairs, by four doublings of a quadratic. Variant of
 // vair_fur_opacity.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
@@ -2980,7 +3453,10 @@ float vair_fur_opacity_rational(float optical_depth) {
 float vair_fur_opacity_doubling_short(float optical_depth) {
     return vair_one_minus_exp_neg_doubling_short(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_RATIONAL_COARSE_958F7FC3
+#define VAIR_FUR_OPACITY_RATIONAL_COARSE_958F7FC3
 // Share of the skin that is hidden by hairs, as a ratio of polynomials of low degree. Variant of
 // vair_fur_opacity.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
@@ -2993,7 +3469,10 @@ float vair_fur_opacity_doubling_short(float optical_depth) {
 float vair_fur_opacity_rational_coarse(float optical_depth) {
     return vair_one_minus_exp_neg_rational_coarse(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPTICAL_DEPTH_29CA14F3
+#define VAIR_FUR_OPTICAL_DEPTH_29CA14F3
 // Optical depth of a coat along a direction: the mean number of hairs that a ray meets.
 //   density     hairs per unit of skin area; in [0, 1e9]
 //   hair_area   silhouette area of one hair, see vair_fur_hair_area; in [0, 20000]
@@ -3012,7 +3491,10 @@ float vair_fur_opacity_rational_coarse(float optical_depth) {
 float vair_fur_optical_depth(float density, float hair_area, vec3 t, vec3 n, vec3 w) {
     return vair_fur_slab_depth(density * hair_area, vair_sin_angle(w, t), dot(w, n));
 }
+#endif
 
+#ifndef VAIR_FUR_OPTICAL_DEPTH_HALF_13AB1F91
+#define VAIR_FUR_OPTICAL_DEPTH_HALF_13AB1F91
 // Optical depth of a coat along a direction off the hairs. Variant of vair_fur_optical_depth.
 //   density     hairs per unit of skin area; in [0, 1e9]
 //   hair_area   silhouette area of one hair, see vair_fur_hair_area; in [0, 20000]
@@ -3028,7 +3510,10 @@ float vair_fur_optical_depth(float density, float hair_area, vec3 t, vec3 n, vec
 float vair_fur_optical_depth_half(float density, float hair_area, vec3 t, vec3 n, vec3 w) {
     return vair_fur_slab_depth(density * hair_area, vair_sin_angle_half(w, t), dot(w, n));
 }
+#endif
 
+#ifndef VAIR_FUR_OPTICAL_DEPTH_CROSS_B0C1B4F8
+#define VAIR_FUR_OPTICAL_DEPTH_CROSS_B0C1B4F8
 // Optical depth of a coat along a direction off the hairs. Variant of vair_fur_optical_depth.
 //   density     hairs per unit of skin area; in [0, 1e9]
 //   hair_area   silhouette area of one hair, see vair_fur_hair_area; in [0, 20000]
@@ -3044,7 +3529,10 @@ float vair_fur_optical_depth_half(float density, float hair_area, vec3 t, vec3 n
 float vair_fur_optical_depth_cross(float density, float hair_area, vec3 t, vec3 n, vec3 w) {
     return vair_fur_slab_depth(density * hair_area, vair_sin_angle_cross(w, t), dot(w, n));
 }
+#endif
 
+#ifndef VAIR_FUR_SOFT_EXPONENT_0F87C3A8
+#define VAIR_FUR_SOFT_EXPONENT_0F87C3A8
 // Exponent of the strand highlight averaged over the hairs of a footprint.
 //   exponent        exponent p of a single hair; in [0, 100000]
 //   variance        variance of the hair directions, see vair_fur_average; in [0, 999]
@@ -3063,7 +3551,10 @@ float vair_fur_optical_depth_cross(float density, float hair_area, vec3 t, vec3 
 float vair_fur_soft_exponent(float exponent, float variance, float azimuth_cosine) {
     return exponent / (1.0 + 2.0 * (1.0 + azimuth_cosine) * exponent * variance);
 }
+#endif
 
+#ifndef VAIR_FUR_SURFACE_ATTENUATION_RISING_40ADAA10
+#define VAIR_FUR_SURFACE_ATTENUATION_RISING_40ADAA10
 // Attenuation f_surface of hairs by the surface below them, for cos_dark < cos_lit. Variant of
 // vair_fur_surface_attenuation.
 //   n_dot_l      cosine between surface normal and light; in [-1, 1]
@@ -3080,7 +3571,10 @@ float vair_fur_surface_attenuation_rising(float n_dot_l, float rho_surface, floa
     float cos_lit) {
     return 1.0 + rho_surface * (vair_safe_smoothstep_rising(cos_dark, cos_lit, n_dot_l) - 1.0);
 }
+#endif
 
+#ifndef VAIR_FUR_SURFACE_ATTENUATION_RAMP_23C8A249
+#define VAIR_FUR_SURFACE_ATTENUATION_RAMP_23C8A249
 // Attenuation f_surface of hairs by the surface below them, by a straight step, for cos_dark <
 // cos_lit. Variant of vair_fur_surface_attenuation.
 //   n_dot_l      cosine between surface normal and light; in [-1, 1]
@@ -3097,7 +3591,10 @@ float vair_fur_surface_attenuation_ramp(float n_dot_l, float rho_surface, float 
     float cos_lit) {
     return 1.0 + rho_surface * (vair_safe_smoothstep_ramp(cos_dark, cos_lit, n_dot_l) - 1.0);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_QUADRATIC16_58678874
+#define VAIR_FUR_WEIGHTS_GOLDMAN_QUADRATIC16_58678874
 // Goldman's weights from transmittances that are sixteenth powers: no exponential, no division.
 // Variant of vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -3118,7 +3615,10 @@ vair_FurWeights vair_fur_weights_goldman_quadratic16(float depth_view, float dep
     float hair = (1.0 - clear_view) * (1.0 - overlap + overlap * clear_light);
     return vair_FurWeights(hair, clear_view * clear_light);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_COARSE_5884D493
+#define VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_COARSE_5884D493
 // Goldman's weights by polynomials of low degree and one division: one percent. Variant of
 // vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -3138,7 +3638,10 @@ vair_FurWeights vair_fur_weights_goldman_rational_coarse(float depth_view, float
     float hair = growth_view * (1.0 + (1.0 - overlap) * growth_light) * skin;
     return vair_FurWeights(hair, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_SLAB_RATIONAL_COARSE_655FD6E2
+#define VAIR_FUR_WEIGHTS_SLAB_RATIONAL_COARSE_655FD6E2
 // Weights of the uniform coat by a polynomial of low degree and one division: one percent. Variant
 // of vair_fur_weights_slab.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -3155,7 +3658,10 @@ vair_FurWeights vair_fur_weights_slab_rational_coarse(float depth_view, float de
     float skin = 1.0 / (1.0 + depth * growth);
     return vair_FurWeights(depth_view * growth * skin, skin);
 }
+#endif
 
+#ifndef VAIR_BLEND_OVER_D3AFF240
+#define VAIR_BLEND_OVER_D3AFF240
 // Colour of a layer drawn over another one, with straight alpha.
 //   under       linear RGB behind the layer; in [0, 10000]
 //   over        linear RGB of the layer, not multiplied by alpha; in [0, 10000]
@@ -3173,7 +3679,10 @@ vair_FurWeights vair_fur_weights_slab_rational_coarse(float depth_view, float de
 vec3 vair_blend_over(vec3 under, vec3 over, float alpha) {
     return under * max(1.0 - alpha, 0.0) + over * alpha;
 }
+#endif
 
+#ifndef VAIR_FIN_NORMAL_F501EEF8
+#define VAIR_FIN_NORMAL_F501EEF8
 // Normal of the fin that stands on an edge of the mesh.
 //   edge        difference of the two vertices of the edge, of any length; length in [1e-6,
 //               1000000]
@@ -3191,7 +3700,10 @@ vec3 vair_fin_normal(vec3 edge, vec3 n) {
         - edge.y * n.x);
     return vair_safe_normalize(across, vair_frame_from_normal(n).tangent);
 }
+#endif
 
+#ifndef VAIR_FIN_NORMAL_DOT_CCB9F43C
+#define VAIR_FIN_NORMAL_DOT_CCB9F43C
 // Normal of the fin that stands on an edge of ordinary length. Variant of vair_fin_normal.
 //   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6
 //   n           surface normal; unit vector
@@ -3206,7 +3718,10 @@ vec3 vair_fin_normal_dot(vec3 edge, vec3 n) {
         - edge.y * n.x);
     return vair_safe_normalize_dot(across, vair_frame_from_normal(n).tangent);
 }
+#endif
 
+#ifndef VAIR_FIN_NORMAL_APART_464C4AFF
+#define VAIR_FIN_NORMAL_APART_464C4AFF
 // Normal of the fin that stands on an edge well off the surface normal. Variant of vair_fin_normal.
 //   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6
 //   n           surface normal; unit vector
@@ -3221,7 +3736,10 @@ vec3 vair_fin_normal_apart(vec3 edge, vec3 n) {
         - edge.y * n.x);
     return inversesqrt(max(dot(across, across), 1e-37)) * across;
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_F85CDD3E
+#define VAIR_FIN_OPACITY_F85CDD3E
 // Opacity of a fin: it fades in as it turns its face to the viewer.
 //   v           direction to the viewer; unit vector
 //   n_fin       normal of the fin, see vair_fin_normal; its sign does not matter; unit vector
@@ -3233,7 +3751,10 @@ vec3 vair_fin_normal_apart(vec3 edge, vec3 n) {
 float vair_fin_opacity(vec3 v, vec3 n_fin) {
     return clamp(2.0 * abs(dot(v, n_fin)) - 1.0, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_SILHOUETTE_954C6525
+#define VAIR_FIN_OPACITY_SILHOUETTE_954C6525
 // Opacity of a fin from the two faces that share its edge.
 //   facing_a    cosine between the direction to the viewer and the normal of one face; in [-1, 1]
 //   facing_b    the same for the other face; in [-1, 1]
@@ -3249,7 +3770,10 @@ float vair_fin_opacity_silhouette(float facing_a, float facing_b, float threshol
     float grazing = min(abs(facing_a), abs(facing_b)) / max(threshold, 1e-6);
     return facing_a * facing_b <= 0.0 ? 1.0 : clamp(1.0 - grazing, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_SURFACE_167EB9F7
+#define VAIR_FIN_OPACITY_SURFACE_167EB9F7
 // Opacity of a fin from the surface normal alone: an upper bound of vair_fin_opacity.
 //   v           direction to the viewer; unit vector
 //   n           surface normal; unit vector
@@ -3263,7 +3787,10 @@ float vair_fin_opacity_silhouette(float facing_a, float facing_b, float threshol
 float vair_fin_opacity_surface(vec3 v, vec3 n) {
     return clamp(2.0 * vair_sin_angle(v, n) - 1.0, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_SURFACE_COSINE_35110E58
+#define VAIR_FIN_OPACITY_SURFACE_COSINE_35110E58
 // Opacity of a fin from the surface normal alone, by the cosine. Variant of
 // vair_fin_opacity_surface.
 //   v           direction to the viewer; unit vector
@@ -3277,7 +3804,10 @@ float vair_fin_opacity_surface(vec3 v, vec3 n) {
 float vair_fin_opacity_surface_cosine(vec3 v, vec3 n) {
     return clamp(2.0 * vair_sin_angle_cosine(v, n) - 1.0, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FIN_POSITION_EED95F16
+#define VAIR_FIN_POSITION_EED95F16
 // Position of a fin vertex: an edge of the mesh is drawn as a quad, once with w = 0 and once with w
 // = 1.
 //   position     vertex of the edge, in scene units; in [-1000, 1000]
@@ -3294,7 +3824,10 @@ float vair_fin_opacity_surface_cosine(vec3 v, vec3 n) {
 vec3 vair_fin_position(vec3 position, vec3 n, float w, float coat_length) {
     return position + w * coat_length * n;
 }
+#endif
 
+#ifndef VAIR_LAYERED_ALPHA_590AA9A3
+#define VAIR_LAYERED_ALPHA_590AA9A3
 // Opacity of a number of equal layers, or of a share of one.
 //   alpha       opacity of one layer, in [0, 1]
 //   layers      number of layers, in [1e-4, 1e5]
@@ -3307,7 +3840,10 @@ float vair_layered_alpha(float alpha, float layers) {
     float depth = -layers * vair_log_one_minus(min(alpha, 0.99999994));
     return alpha < 1.0 ? vair_one_minus_exp_neg(depth) : 1.0;
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_RESAMPLE_0D4B35D0
+#define VAIR_SHELL_ALPHA_RESAMPLE_0D4B35D0
 // Opacity per layer that keeps the opacity of the whole coat for another number of layers.
 //   alpha       opacity of a layer as authored; in [0, 1]
 //   authored    number of blended layers, the opaque base not counted, that alpha was made for; in
@@ -3322,7 +3858,10 @@ float vair_layered_alpha(float alpha, float layers) {
 float vair_shell_alpha_resample(float alpha, float authored, float drawn) {
     return vair_layered_alpha(alpha, authored / max(drawn, 1.0));
 }
+#endif
 
+#ifndef VAIR_LAYERED_ALPHA_DIRECT_ED1D26A0
+#define VAIR_LAYERED_ALPHA_DIRECT_ED1D26A0
 // Opacity of a number of equal layers, to a small absolute error.
 //   alpha       opacity of one layer, in [0, 1]
 //   layers      number of layers, in [1e-4, 1e5]
@@ -3334,7 +3873,10 @@ float vair_layered_alpha_direct(float alpha, float layers) {
     float left = exp(max(layers * log(max(1.0 - alpha, 1.2e-38)), -80.0));
     return alpha < 1.0 ? 1.0 - left : 1.0;
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_RESAMPLE_DIRECT_1DFCC7C0
+#define VAIR_SHELL_ALPHA_RESAMPLE_DIRECT_1DFCC7C0
 // Opacity per layer that keeps the opacity of the whole coat for another number of layers. Variant
 // of vair_shell_alpha_resample.
 //   alpha       opacity of a layer as authored; in [0, 1]
@@ -3349,7 +3891,10 @@ float vair_layered_alpha_direct(float alpha, float layers) {
 float vair_shell_alpha_resample_direct(float alpha, float authored, float drawn) {
     return vair_layered_alpha_direct(alpha, authored / max(drawn, 1.0));
 }
+#endif
 
+#ifndef VAIR_LAYERED_ALPHA_THIN_5C66BE5B
+#define VAIR_LAYERED_ALPHA_THIN_5C66BE5B
 // Opacity of a number of equal layers that are at most half opaque, to 0.1 percent.
 //   alpha       opacity of one layer, in [0, 0.5]
 //   layers      number of layers, in [1e-4, 1e5]
@@ -3361,7 +3906,10 @@ float vair_shell_alpha_resample_direct(float alpha, float authored, float drawn)
 float vair_layered_alpha_thin(float alpha, float layers) {
     return vair_one_minus_exp_neg_doubling_short(-layers * vair_log_one_minus_thin(alpha));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_RESAMPLE_THIN_99E20678
+#define VAIR_SHELL_ALPHA_RESAMPLE_THIN_99E20678
 // Opacity per layer that keeps the opacity of the whole coat for another number of layers. Variant
 // of vair_shell_alpha_resample.
 //   alpha       opacity of a layer as authored, at most 1/2; in [0, 0.5]
@@ -3376,7 +3924,10 @@ float vair_layered_alpha_thin(float alpha, float layers) {
 float vair_shell_alpha_resample_thin(float alpha, float authored, float drawn) {
     return vair_layered_alpha_thin(alpha, authored / max(drawn, 1.0));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_VIEW_A10DB5C2
+#define VAIR_SHELL_ALPHA_VIEW_A10DB5C2
 // Opacity of a layer along a slanted line of sight.
 //   alpha       opacity of the layer seen along the normal; in [0, 1]
 //   n_dot_v     cosine between surface normal and viewer; shells are seen from behind too, so its
@@ -3390,7 +3941,10 @@ float vair_shell_alpha_resample_thin(float alpha, float authored, float drawn) {
 float vair_shell_alpha_view(float alpha, float n_dot_v) {
     return vair_layered_alpha(alpha, 1.0 / max(abs(n_dot_v), 1e-5));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_VIEW_DIRECT_20FBA71B
+#define VAIR_SHELL_ALPHA_VIEW_DIRECT_20FBA71B
 // Opacity of a layer along a slanted line of sight. Variant of vair_shell_alpha_view.
 //   alpha       opacity of the layer seen along the normal; in [0, 1]
 //   n_dot_v     cosine between surface normal and viewer; its sign is ignored; in [-1, 1]
@@ -3403,7 +3957,10 @@ float vair_shell_alpha_view(float alpha, float n_dot_v) {
 float vair_shell_alpha_view_direct(float alpha, float n_dot_v) {
     return vair_layered_alpha_direct(alpha, 1.0 / max(abs(n_dot_v), 1e-5));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_VIEW_THIN_17EA97ED
+#define VAIR_SHELL_ALPHA_VIEW_THIN_17EA97ED
 // Opacity of a layer along a slanted line of sight. Variant of vair_shell_alpha_view.
 //   alpha       opacity of the layer seen along the normal, at most 1/2; in [0, 0.5]
 //   n_dot_v     cosine between surface normal and viewer; its sign is ignored; in [-1, 1]
@@ -3416,7 +3973,10 @@ float vair_shell_alpha_view_direct(float alpha, float n_dot_v) {
 float vair_shell_alpha_view_thin(float alpha, float n_dot_v) {
     return vair_layered_alpha_thin(alpha, 1.0 / max(abs(n_dot_v), 1e-5));
 }
+#endif
 
+#ifndef VAIR_SHELL_HEIGHT_6E4DAEC8
+#define VAIR_SHELL_HEIGHT_6E4DAEC8
 // Height of a layer above the skin as a share of the coat's length.
 //   layer       index of the layer; 0 is the opaque base at the skin; in [0, 256]
 //   layers      number of layers, the base included; in [0, 256]
@@ -3434,7 +3994,10 @@ float vair_shell_height(uint layer, uint layers) {
     float outer = layers > 1u ? 1.0 : 0.0;
     return (layer >= top || layers <= 1u) ? outer : inner;
 }
+#endif
 
+#ifndef VAIR_SHELL_OFFSET_79BD8D01
+#define VAIR_SHELL_OFFSET_79BD8D01
 // Position of a vertex on the shell at a height above the skin, with combed and bent hairs.
 //   position     vertex on the skin, in scene units; in [-1000, 1000]
 //   n            surface normal; unit vector
@@ -3459,7 +4022,10 @@ vec3 vair_shell_offset(vec3 position, vec3 n, float coat_length, float height, v
     vec3 along = n + height * (comb + height * force);
     return position + coat_length * height * vair_safe_normalize(along, n);
 }
+#endif
 
+#ifndef VAIR_SHELL_OFFSET_DOT_DC6063DA
+#define VAIR_SHELL_OFFSET_DOT_DC6063DA
 // Position of a vertex on the shell at a height above the skin, with hairs of ordinary bends.
 // Variant of vair_shell_offset.
 //   position     vertex on the skin, in scene units; in [-1000, 1000]
@@ -3482,7 +4048,10 @@ vec3 vair_shell_offset_dot(vec3 position, vec3 n, float coat_length, float heigh
     vec3 along = n + height * (comb + height * force);
     return position + coat_length * height * vair_safe_normalize_dot(along, n);
 }
+#endif
 
+#ifndef VAIR_SHELL_OFFSET_NONZERO_EC9BE607
+#define VAIR_SHELL_OFFSET_NONZERO_EC9BE607
 // Position of a vertex on the shell at a height above the skin, with hairs that keep a direction.
 // Variant of vair_shell_offset.
 //   position     vertex on the skin, in scene units; in [-1000, 1000]
@@ -3505,7 +4074,10 @@ vec3 vair_shell_offset_nonzero(vec3 position, vec3 n, float coat_length, float h
     vec3 along = n + height * (comb + height * force);
     return position + coat_length * height * vair_safe_normalize_nonzero(along, n);
 }
+#endif
 
+#ifndef VAIR_SHELL_SINE_POWER_38CE9C3A
+#define VAIR_SHELL_SINE_POWER_38CE9C3A
 // Power sin(n, w)^p, accurate at every angle and for every exponent.
 //   n           hair direction; unit vector
 //   w           direction to the light, or half vector; unit vector
@@ -3527,7 +4099,10 @@ float vair_shell_sine_power(vec3 n, vec3 w, float p) {
     float power = exp(max(0.5 * p * log_square, -80.0));
     return (sine_square > 0.0 || p <= 0.0) ? power : 0.0;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_EA29B848
+#define VAIR_SHELL_SHADE_EA29B848
 // Reflectance of a shell by hairs that stand along the surface normal.
 //   n           surface normal, which is the hair direction; unit vector
 //   l           direction to the light; unit vector
@@ -3549,7 +4124,10 @@ vec3 vair_shell_shade(vec3 n, vec3 l, vec3 h, vec3 k_diffuse, float p_diffuse, v
     return k_diffuse * vair_shell_sine_power(n, l, p_diffuse) + k_specular
         * vair_shell_sine_power(n, h, p_specular);
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_COSINE_1AD09A33
+#define VAIR_SHELL_SHADE_COSINE_1AD09A33
 // Reflectance of a shell from two cosines, for exponents of 2 and more. Variant of
 // vair_shell_shade.
 //   n           surface normal, which is the hair direction; unit vector
@@ -3574,7 +4152,10 @@ vec3 vair_shell_shade_cosine(vec3 n, vec3 l, vec3 h, vec3 k_diffuse, float p_dif
     float specular = vair_pow_one_minus(cos_h * cos_h, 0.5 * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_FROM4_D1436EC5
+#define VAIR_SHELL_SHADE_FROM4_D1436EC5
 // Reflectance of a shell from two cosines, for exponents of 8 and more, without logarithms. Variant
 // of vair_shell_shade.
 //   n           surface normal, which is the hair direction; unit vector
@@ -3597,7 +4178,10 @@ vec3 vair_shell_shade_from4(vec3 n, vec3 l, vec3 h, vec3 k_diffuse, float p_diff
     float specular = vair_pow_one_minus_from4(cos_h * cos_h, 0.5 * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_CUBIC8_0BE8BD27
+#define VAIR_SHELL_SHADE_CUBIC8_0BE8BD27
 // Reflectance of a shell from two cosines, for exponents of 16 and more, by polynomials. Variant of
 // vair_shell_shade.
 //   n           surface normal, which is the hair direction; unit vector
@@ -3620,7 +4204,10 @@ vec3 vair_shell_shade_cubic8(vec3 n, vec3 l, vec3 h, vec3 k_diffuse, float p_dif
     float specular = vair_pow_one_minus_cubic8(cos_h * cos_h, 0.5 * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_PRINTED_A9689BB9
+#define VAIR_SHELL_SHADE_PRINTED_A9689BB9
 // Reflectance of a shell as the lecture prints it, with 1 - cos^(p/2) for (1 - cos^2)^(p/2). As the
 // lecture prints it; right: vair_shell_shade.
 //   n           surface normal; unit vector
@@ -3642,7 +4229,10 @@ vec3 vair_shell_shade_printed(vec3 n, vec3 l, vec3 h, vec3 k_diffuse, float p_di
     float specular = 1.0 - vair_safe_pow(clamp(dot(n, h), -1.0, 1.0), 0.5 * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADOW_F8E67078
+#define VAIR_SHELL_SHADOW_F8E67078
 // Share of the light that reaches a shell through the fur above it.
 //   height      height of the shell, 0 at the skin and 1 at the top, see vair_shell_height; in [0,
 //               1]
@@ -3658,7 +4248,10 @@ vec3 vair_shell_shade_printed(vec3 n, vec3 l, vec3 h, vec3 k_diffuse, float p_di
 float vair_shell_shadow(float height, float s_min) {
     return s_min * (1.0 - height) + height;
 }
+#endif
 
+#ifndef VAIR_PCG3D_E8C7FD1C
+#define VAIR_PCG3D_E8C7FD1C
 // Hash of three integers to three, each of which depends on all; a bijection.
 //   x           any three numbers, for instance a cell and a seed; finite
 //   returns     three times 32 well-mixed bits (the upper ones are better); (1, 2, 3) gives
@@ -3682,7 +4275,10 @@ uvec3 vair_pcg3d(uvec3 x) {
     uint c3 = c2 + a3 * b3;
     return uvec3(a3, b3, c3);
 }
+#endif
 
+#ifndef VAIR_SHELL_STRAND_MASK_9F5742DF
+#define VAIR_SHELL_STRAND_MASK_9F5742DF
 // Coverage of a shell texel by one conical hair per cell of a square grid, bit-exact on every
 // target.
 //   uv          texture coordinates, in [-1024, 1024]; cut to multiples of 2^-20
@@ -3722,7 +4318,10 @@ float vair_shell_strand_mask(vec2 uv, float height, float density, float thickne
     uint from_top = ((along >> 5u) & 32767u) - (base + (((random.y >> 17u) * room) >> 15u));
     return from_left * from_left + from_top * from_top < radius * radius ? 1.0 : 0.0;
 }
+#endif
 
+#ifndef VAIR_WRAPPED_SUM_FA70C71F
+#define VAIR_WRAPPED_SUM_FA70C71F
 // Sum modulo 1 of two numbers in [0, 1).
 //   a        multiple of 2^-24 for an exact result; in [0, 0.99999994]
 //   b        multiple of 2^-24 for an exact result; in [0, 0.99999994]
@@ -3734,7 +4333,10 @@ float vair_wrapped_sum(float a, float b) {
     float d = a + (b - 1.0);
     return min(d < 0.0 ? d + 1.0 : d, 0.99999994);
 }
+#endif
 
+#ifndef VAIR_CRANLEY_PATTERSON_590853F0
+#define VAIR_CRANLEY_PATTERSON_590853F0
 // Rotation of a point on the unit torus: the same point set, decorrelated from pixel to pixel.
 //   u           point in [0, 1)^2
 //   shift       displacement in [0, 1)^2, for instance from a hash of the pixel
@@ -3749,7 +4351,10 @@ float vair_wrapped_sum(float a, float b) {
 vec2 vair_cranley_patterson(vec2 u, vec2 shift) {
     return vec2(vair_wrapped_sum(u.x, shift.x), vair_wrapped_sum(u.y, shift.y));
 }
+#endif
 
+#ifndef VAIR_EIGHTH_TURN_DFBABF78
+#define VAIR_EIGHTH_TURN_DFBABF78
 // Point on the unit circle up to 45 degrees on either side of the x axis.
 //   y        angle in units of pi / 4, in [-1, 1]
 //   returns  (cos(pi y / 4), sin(pi y / 4))
@@ -3763,7 +4368,10 @@ vec2 vair_eighth_turn(float y) {
         * (0.015854327 + s * (-0.00032594008 + s * 3.530338e-6)));
     return vec2(cosine, sine);
 }
+#endif
 
+#ifndef VAIR_DISK_CONCENTRIC_87A35474
+#define VAIR_DISK_CONCENTRIC_87A35474
 // Uniform point in the unit disc; concentric squares become concentric circles.
 //   u           pair of uniform numbers in [0, 1); in [0, 1]
 //   returns     point of length max(|2 u.x - 1|, |2 u.y - 1|), at most 1 up to rounding
@@ -3784,7 +4392,10 @@ vec2 vair_disk_concentric(vec2 u) {
     vec2 p = vec2(larger * direction.x, radius * direction.y);
     return along_x ? p : p.yx;
 }
+#endif
 
+#ifndef VAIR_UNIT_FLOAT_02BE102A
+#define VAIR_UNIT_FLOAT_02BE102A
 // Number in [0, 1) from the upper 24 of 32 bits.
 //   bits        uniform bits, for instance of vair_pcg_hash or vair_radical_inverse_base2; finite
 //   returns     (bits >> 8) 2^-24, a multiple of 2^-24, at most 1 - 2^-24
@@ -3795,7 +4406,10 @@ vec2 vair_disk_concentric(vec2 u) {
 float vair_unit_float(uint bits) {
     return float(bits >> 8u) * 5.9604645e-8;
 }
+#endif
 
+#ifndef VAIR_RADICAL_INVERSE_BASE2_A303C6D8
+#define VAIR_RADICAL_INVERSE_BASE2_A303C6D8
 // Radical inverse of an index in base 2: its 32 bits in reverse order.
 //   i           index of the point; finite
 //   returns     the reversed bits; read as a 32-bit fraction they are the van der Corput sequence,
@@ -3812,7 +4426,10 @@ uint vair_radical_inverse_base2(uint i) {
     uint words = ((octets & 16711935u) << 8u) | ((octets >> 8u) & 16711935u);
     return (words << 16u) | (words >> 16u);
 }
+#endif
 
+#ifndef VAIR_HAMMERSLEY_882D6BDF
+#define VAIR_HAMMERSLEY_882D6BDF
 // Point i of n of the Hammersley set in the unit square, bit-exact on every target.
 //   i           index of the point, 0 <= i < n; in [0, 1048575]
 //   n           number of points, at most 2^20; in [1, 1048576]
@@ -3839,7 +4456,10 @@ vec2 vair_hammersley(uint i, uint n) {
     return vec2(float(int(quotient)) * 5.9604645e-8,
         vair_unit_float(vair_radical_inverse_base2(i)));
 }
+#endif
 
+#ifndef VAIR_HEMISPHERE_COSINE_1D252C43
+#define VAIR_HEMISPHERE_COSINE_1D252C43
 // Direction of the upper hemisphere with density cos / pi.
 //   u           pair of uniform numbers in [0, 1); in [0, 1]
 //   returns     unit vector with z >= 0; the boundary of the square goes to the horizon
@@ -3855,7 +4475,10 @@ vec3 vair_hemisphere_cosine(vec2 u) {
     float rim = 2.0 * max(min(min(u.x, opposite.x), min(u.y, opposite.y)), 0.0);
     return vec3(vair_disk_concentric(u), sqrt(rim * (2.0 - rim)));
 }
+#endif
 
+#ifndef VAIR_PCG_HASH_FB8DEFA3
+#define VAIR_PCG_HASH_FB8DEFA3
 // Hash of an integer: one step of the PCG generator and its permutation (RXS-M-XS 32), a bijection.
 //   x           any number; finite
 //   returns     32 well-mixed bits; 0 gives 07bb2fe2, 1 gives a8beea3c
@@ -3868,7 +4491,10 @@ uint vair_pcg_hash(uint x) {
     uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return (word >> 22u) ^ word;
 }
+#endif
 
+#ifndef VAIR_R2_SEQUENCE_B2936016
+#define VAIR_R2_SEQUENCE_B2936016
 // Point i of the R2 sequence in the unit square, bit-exact on every target.
 //   i           index of the point; the sequence needs no length and starts at (0, 0); finite
 //   returns     both fractional parts of i / g and i / g^2, as multiples of 2^-24 in [0, 1)
@@ -3880,7 +4506,10 @@ uint vair_pcg_hash(uint x) {
 vec2 vair_r2_sequence(uint i) {
     return vec2(vair_unit_float(i * 3242174889u), vair_unit_float(i * 2447445413u));
 }
+#endif
 
+#ifndef VAIR_UNIT_CIRCLE_27CD3741
+#define VAIR_UNIT_CIRCLE_27CD3741
 // Point on the unit circle at a share of a full turn from the x axis.
 //   turns    angle as a share of a full turn, in [0, 1]
 //   returns  (cos(2 pi turns), sin(2 pi turns)); exact at quarter turns
@@ -3894,7 +4523,10 @@ vec2 vair_unit_circle(float turns) {
     vec2 swapped = (nearest == 1.0 || nearest == 3.0) ? vec2(-p.y, p.x) : p;
     return (nearest == 2.0 || nearest == 3.0) ? -swapped : swapped;
 }
+#endif
 
+#ifndef VAIR_SPHERE_UNIFORM_B931121F
+#define VAIR_SPHERE_UNIFORM_B931121F
 // Uniform direction on the unit sphere.
 //   u           pair of uniform numbers in [0, 1); in [0, 1]
 //   returns     unit vector with z = 1 - 2 u.x and azimuth 2 pi u.y; u.x = 0 is the pole z = 1
@@ -3906,7 +4538,10 @@ vec3 vair_sphere_uniform(vec2 u) {
     float radius = 2.0 * sqrt(max(u.x * (1.0 - u.x), 0.0));
     return vec3(radius * vair_unit_circle(u.y), 1.0 - 2.0 * u.x);
 }
+#endif
 
+#ifndef VAIR_HALF_SUM_8D344E6E
+#define VAIR_HALF_SUM_8D344E6E
 // The half vector of two directions times |l + v|, accurate even for l close to -v.
 //   l        direction to the light; unit vector
 //   v        direction to the viewer; unit vector
@@ -3922,7 +4557,10 @@ vec3 vair_half_sum(vec3 l, vec3 v) {
     vec3 g = l + v;
     return g - 0.25 * (g.x * d.x + g.y * d.y + g.z * d.z) * d;
 }
+#endif
 
+#ifndef VAIR_LOG_COSINE_SQUARED_9F0C3947
+#define VAIR_LOG_COSINE_SQUARED_9F0C3947
 // Natural logarithm of a squared cosine, with flat relative error as the cosine tends to 1 and to
 // 0.
 //   sine_squared    1 - c^2, computed directly; in [0, 1]
@@ -3938,7 +4576,10 @@ float vair_log_cosine_squared(float sine_squared, float cosine_squared) {
     float log_far = log(max(cosine_squared, 1.2e-38));
     return sine_squared < 0.5 ? log_near : log_far;
 }
+#endif
 
+#ifndef VAIR_COSINE_POWER_DA53DB3A
+#define VAIR_COSINE_POWER_DA53DB3A
 // Power c^exponent of a cosine c >= 0, accurate as c -> 1 and as c -> 0.
 //   sine_squared    1 - c^2, computed directly; in [0, 1]
 //   cosine_squared  c^2, computed directly; in [0, 1]
@@ -3952,7 +4593,10 @@ float vair_cosine_power(float sine_squared, float cosine_squared, float exponent
     float log_power = 0.5 * exponent * vair_log_cosine_squared(sine_squared, cosine_squared);
     return exp(clamp(log_power, -80.0, 0.0));
 }
+#endif
 
+#ifndef VAIR_HALF_COSINE_POWER_831676B7
+#define VAIR_HALF_COSINE_POWER_831676B7
 // Power |h.z|^exponent of the half vector h = g / |g|.
 //   g         vair_half_sum of l and v; in [-2, 2]
 //   exponent  exponent, in [0, 1e5]
@@ -3966,7 +4610,10 @@ float vair_half_cosine_power(vec3 g, float exponent) {
     float k = 1.0 / max(planar + upright, 1e-37);
     return vair_cosine_power(planar * k, upright * k, exponent);
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_POWER_B436DB4B
+#define VAIR_ASHIKHMIN_SHIRLEY_POWER_B436DB4B
 // Density of half vectors per steradian.
 //   g           vair_half_sum of l and v; in [-2, 2]
 //   exponent_x  sharpness across the tangent direction; in [0, 100000]
@@ -3983,7 +4630,10 @@ float vair_ashikhmin_shirley_power(vec3 g, float exponent_x, float exponent_y) {
     float scale = sqrt((exponent_x + 1.0) * (exponent_y + 1.0)) * 0.15915494;
     return scale * vair_half_cosine_power(g, exponent);
 }
+#endif
 
+#ifndef VAIR_HALF_JACOBIAN_12DD1D89
+#define VAIR_HALF_JACOBIAN_12DD1D89
 // Half vectors per steradian of light directions: 1 / (4 |v.h|) for l mirrored about h.
 //   g           vair_half_sum of l and v; in [-2, 2]
 //   returns     1 / (2 |g|)
@@ -3995,7 +4645,10 @@ float vair_half_jacobian(vec3 g) {
     float square = dot(g, g);
     return square > 1e-37 ? 0.5 * inversesqrt(max(square, 1e-37)) : 0.0;
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_PDF_E535D5B8
+#define VAIR_ASHIKHMIN_SHIRLEY_PDF_E535D5B8
 // Density with which vair_ashikhmin_shirley_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4019,7 +4672,10 @@ float vair_ashikhmin_shirley_pdf(vec3 l, vec3 v, float exponent_x, float exponen
     vec3 g = vair_half_sum(l, v);
     return vair_ashikhmin_shirley_power(g, exponent_x, exponent_y) * vair_half_jacobian(g);
 }
+#endif
 
+#ifndef VAIR_POWER_DEFECT_A7C79DFD
+#define VAIR_POWER_DEFECT_A7C79DFD
 // Defect q = 1 - cos of the angle that a uniform number selects from the density cos^(exponent -
 // 1).
 //   u         uniform number in [0, 1); 0 is the peak
@@ -4031,7 +4687,10 @@ float vair_ashikhmin_shirley_pdf(vec3 l, vec3 v, float exponent_x, float exponen
 float vair_power_defect(float u, float exponent) {
     return vair_one_minus_exp_neg(-vair_log_one_minus(u) / exponent);
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_SAMPLE_17FC24E5
+#define VAIR_ASHIKHMIN_SHIRLEY_SAMPLE_17FC24E5
 // Direction to the light, drawn with density vair_ashikhmin_shirley_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4057,7 +4716,10 @@ vec3 vair_ashikhmin_shirley_sample(vec2 u, vec3 v, float exponent_x, float expon
     float k = sqrt(max(q * (2.0 - q), 0.0)) * inversesqrt(d);
     return normalize(vair_mirror(v, vec3(k * x, k * y, 1.0 - q)));
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_VALUE_E230E2D1
+#define VAIR_ASHIKHMIN_SHIRLEY_VALUE_E230E2D1
 // Reflectance of the Ashikhmin-Shirley highlight per steradian, without the cosine, Fresnel factor
 // 1.
 //   l           direction to the light, in the local frame; unit vector
@@ -4078,7 +4740,10 @@ float vair_ashikhmin_shirley_value(vec3 l, vec3 v, float exponent_x, float expon
     float value = 0.5 * lobe / max(length(g) * max(l.z, v.z), 1e-20);
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_PDF_C6662434
+#define VAIR_BLINN_PHONG_PDF_C6662434
 // Density with which vair_blinn_phong_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4102,7 +4767,10 @@ float vair_blinn_phong_pdf(vec3 l, vec3 v, float exponent) {
     return (exponent + 1.0) * 0.15915494 * vair_half_cosine_power(g, exponent)
         * vair_half_jacobian(g);
 }
+#endif
 
+#ifndef VAIR_AROUND_AXIS_11DE3DFA
+#define VAIR_AROUND_AXIS_11DE3DFA
 // Unit vector at a given defect from the z axis.
 //   q        defect 1 - cos of the angle to the z axis; in [0, 2]
 //   turns    azimuth as a share of a full turn from the x axis; in [0, 1]
@@ -4112,7 +4780,10 @@ float vair_blinn_phong_pdf(vec3 l, vec3 v, float exponent) {
 vec3 vair_around_axis(float q, float turns) {
     return vec3(sqrt(max(q * (2.0 - q), 0.0)) * vair_unit_circle(turns), 1.0 - q);
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_SAMPLE_7811AD57
+#define VAIR_BLINN_PHONG_SAMPLE_7811AD57
 // Direction to the light, drawn with density vair_blinn_phong_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4127,7 +4798,10 @@ vec3 vair_blinn_phong_sample(vec2 u, vec3 v, float exponent) {
     vec3 h = vair_around_axis(vair_power_defect(u.x, exponent + 1.0), u.y);
     return normalize(vair_mirror(v, h));
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_SCALE_B92A6EE6
+#define VAIR_BLINN_PHONG_SCALE_B92A6EE6
 // Height of the Blinn-Phong lobe that gives it albedo 1 at normal incidence.
 //   exponent  p, sharpness of the lobe; in [0, 100000]
 //   returns   (p + 2) (p + 4) / (8 pi (2^(-p/2) + p)); 1 / pi at p = 0
@@ -4137,7 +4811,10 @@ float vair_blinn_phong_scale(float exponent) {
     float falloff = exp(max(-0.3465736 * exponent, -80.0));
     return 0.039788734 * (exponent + 2.0) * ((exponent + 4.0) / (falloff + exponent));
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_VALUE_204A9A4F
+#define VAIR_BLINN_PHONG_VALUE_204A9A4F
 // Reflectance of the Blinn-Phong lobe per steradian, without the cosine, Fresnel factor 1.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4154,7 +4831,10 @@ float vair_blinn_phong_value(vec3 l, vec3 v, float exponent) {
         * vair_half_cosine_power(vair_half_sum(l, v), exponent);
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_GGX_DISTRIBUTION_A99EF118
+#define VAIR_GGX_DISTRIBUTION_A99EF118
 // Density D(h) of microfacet normals, area per projected area and steradian.
 //   g           vair_half_sum of l and v; h = g / |g|; in [-2, 2]
 //   alpha_x     width along the tangent; in [0.0001, 1]
@@ -4171,7 +4851,10 @@ float vair_ggx_distribution(vec3 g, float alpha_x, float alpha_y) {
     float ratio = min(dot(g, g) / max(x * x + y * y + g.z * g.z, 1e-37), 1.0);
     return 0.31830987 / (alpha_x * alpha_y) * (ratio * ratio);
 }
+#endif
 
+#ifndef VAIR_GGX_STRETCH_C19E1B74
+#define VAIR_GGX_STRETCH_C19E1B74
 // Length of (alpha_x w.x, alpha_y w.y, w.z), from which all masking terms follow.
 //   w        direction, in the local frame; unit vector
 //   alpha_x  width along the tangent; in [0.0001, 1]
@@ -4183,7 +4866,10 @@ float vair_ggx_distribution(vec3 g, float alpha_x, float alpha_y) {
 float vair_ggx_stretch(vec3 w, float alpha_x, float alpha_y) {
     return length(vec3(alpha_x * w.x, alpha_y * w.y, w.z));
 }
+#endif
 
+#ifndef VAIR_GGX_VISIBLE_AREA_549787CA
+#define VAIR_GGX_VISIBLE_AREA_549787CA
 // Twice the projected area of the facets that face a direction, per area of the surface.
 //   w        direction, in the local frame; also from below; unit vector
 //   alpha_x  width along the tangent; in [0.0001, 1]
@@ -4199,7 +4885,10 @@ float vair_ggx_visible_area(vec3 w, float alpha_x, float alpha_y) {
     float below = (x * x + y * y) / (s + max(-w.z, 0.0));
     return max(w.z >= 0.0 ? w.z + s : below, 1e-20);
 }
+#endif
 
+#ifndef VAIR_GGX_PDF_2A2479E0
+#define VAIR_GGX_PDF_2A2479E0
 // Density with which vair_ggx_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4222,7 +4911,10 @@ float vair_ggx_pdf(vec3 l, vec3 v, float alpha_x, float alpha_y) {
         / vair_ggx_visible_area(v, alpha_x, alpha_y);
     return g.z > 0.0 ? pdf : 0.0;
 }
+#endif
 
+#ifndef VAIR_GGX_SAMPLE_E5FBDF74
+#define VAIR_GGX_SAMPLE_E5FBDF74
 // Direction to the light, drawn with density vair_ggx_pdf: v mirrored about a visible normal.
 //   u           pair of uniform numbers in [0, 1); u.y = 0 is the middle of the visible normals
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4256,7 +4948,10 @@ vec3 vair_ggx_sample(vec2 u, vec3 v, float alpha_x, float alpha_y) {
     vec3 r = vair_mirror(v, h);
     return (1.5 - 0.5 * dot(r, r)) * r;
 }
+#endif
 
+#ifndef VAIR_GGX_VALUE_D073D57A
+#define VAIR_GGX_VALUE_D073D57A
 // Reflectance of the anisotropic GGX lobe per steradian, without the cosine, Fresnel factor 1.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4281,7 +4976,10 @@ float vair_ggx_value(vec3 l, vec3 v, float alpha_x, float alpha_y) {
         / max(mask, 1e-20);
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_LAMBERT_PDF_CF58D19C
+#define VAIR_LAMBERT_PDF_CF58D19C
 // Density with which vair_lambert_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; without influence; unit vector
@@ -4293,7 +4991,10 @@ float vair_ggx_value(vec3 l, vec3 v, float alpha_x, float alpha_y) {
 float vair_lambert_pdf(vec3 l, vec3 v) {
     return 0.31830987 * max(l.z, 0.0);
 }
+#endif
 
+#ifndef VAIR_LAMBERT_SAMPLE_33FFF568
+#define VAIR_LAMBERT_SAMPLE_33FFF568
 // Direction to the light, drawn with density vair_lambert_pdf.
 //   u           pair of uniform numbers in [0, 1)
 //   v           direction to the viewer, in the local frame; without influence; unit vector
@@ -4309,7 +5010,10 @@ vec3 vair_lambert_sample(vec2 u, vec3 v) {
     vec3 w = vair_hemisphere_cosine(u);
     return w.z > 0.0 ? w : vec3(0.0, 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_LAMBERT_VALUE_1ADF7433
+#define VAIR_LAMBERT_VALUE_1ADF7433
 // Reflectance of a white Lambert surface per steradian, without the cosine.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4321,7 +5025,10 @@ vec3 vair_lambert_sample(vec2 u, vec3 v) {
 float vair_lambert_value(vec3 l, vec3 v) {
     return (l.z > 0.0 && v.z > 0.0) ? 0.31830987 : 0.0;
 }
+#endif
 
+#ifndef VAIR_PHONG_POWER_EF7E1C08
+#define VAIR_PHONG_POWER_EF7E1C08
 // Power max(0, l.r)^exponent around the mirror direction r = (-v.x, -v.y, v.z).
 //   l         direction to the light, in the local frame; unit vector
 //   v         direction to the viewer, in the local frame; unit vector
@@ -4335,7 +5042,10 @@ float vair_phong_power(vec3 l, vec3 v, float exponent) {
     float q = min(0.5 * dot(d, d), 2.0);
     return q < 1.0 ? vair_pow_one_minus(q, exponent) : 0.0;
 }
+#endif
 
+#ifndef VAIR_PHONG_PDF_8C93B7D8
+#define VAIR_PHONG_PDF_8C93B7D8
 // Density with which vair_phong_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4353,7 +5063,10 @@ float vair_phong_power(vec3 l, vec3 v, float exponent) {
 float vair_phong_pdf(vec3 l, vec3 v, float exponent) {
     return (exponent + 1.0) * 0.15915494 * vair_phong_power(l, v, exponent);
 }
+#endif
 
+#ifndef VAIR_PHONG_SAMPLE_127FCCCC
+#define VAIR_PHONG_SAMPLE_127FCCCC
 // Direction to the light, drawn with density vair_phong_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4371,7 +5084,10 @@ vec3 vair_phong_sample(vec2 u, vec3 v, float exponent) {
     vair_Frame frame = vair_frame_from_normal(vec3(-v.x, -v.y, v.z));
     return normalize(vair_to_world(frame, vair_around_axis(q, u.y)));
 }
+#endif
 
+#ifndef VAIR_PHONG_VALUE_E4DCEC53
+#define VAIR_PHONG_VALUE_E4DCEC53
 // Reflectance of the modified Phong lobe per steradian, without the cosine, Fresnel factor 1.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4392,7 +5108,10 @@ float vair_phong_value(vec3 l, vec3 v, float exponent) {
     float value = (exponent + 2.0) * 0.15915494 * vair_phong_power(l, v, exponent);
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_ARC_NORMAL_D0497A52
+#define VAIR_ARC_NORMAL_D0497A52
 // Cosine and sine of an angle in radians.
 //   xi       angle, in [-pi, pi]; in [-3.2, 3.2]
 //   returns  (cos(xi), sin(xi))
@@ -4403,7 +5122,10 @@ vec2 vair_arc_normal(float xi) {
     vec2 p = vair_unit_circle(abs(xi) * 0.15915494);
     return vec2(p.x, xi < 0.0 ? -p.y : p.y);
 }
+#endif
 
+#ifndef VAIR_SATIN_FACET_DENSITY_A91730DE
+#define VAIR_SATIN_FACET_DENSITY_A91730DE
 // Density per steradian of half vectors on a row of cylinders along x.
 //   g         vair_half_sum of l and v; h = g / |g|, turned up; in [-2, 2]
 //   spread    half angle of each arc, in radians; in [0.001, 1.57079637]
@@ -4427,7 +5149,10 @@ float vair_satin_facet_density(vec3 g, float spread, float exponent) {
     float density = 0.125 * m * power * sqrt(quotient) / spread;
     return abs(g.y) * edge.x < abs(g.z) * edge.y ? density : 0.0;
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_PDF_30DF270E
+#define VAIR_POULIN_FOURNIER_PDF_30DF270E
 // Density with which vair_poulin_fournier_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4447,7 +5172,10 @@ float vair_poulin_fournier_pdf(vec3 l, vec3 v, float spread, float specular, flo
     float facets = vair_satin_facet_density(g, spread, exponent) * vair_half_jacobian(g);
     return (1.0 - specular) * (0.31830987 * max(l.z, 0.0)) + specular * facets;
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_SAMPLE_28CE92CE
+#define VAIR_POULIN_FOURNIER_SAMPLE_28CE92CE
 // Direction to the light, drawn with density vair_poulin_fournier_pdf.
 //   u           pair of uniform numbers in [0, 1); u.x < 1 - specular is the diffuse part
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4477,7 +5205,10 @@ vec3 vair_poulin_fournier_sample(vec2 u, vec3 v, float spread, float specular, f
     vec3 h = vec3(y >= 0.0 ? s : -s, (1.0 - q) * n.y, (1.0 - q) * n.x);
     return u.x < diffuse_share ? diffuse : normalize(vair_mirror(v, h));
 }
+#endif
 
+#ifndef VAIR_SATIN_VISIBLE_94AF3214
+#define VAIR_SATIN_VISIBLE_94AF3214
 // Interval of the arc coordinate xi, the angle of the arc's normal from z, that a direction sees.
 //   w        direction above the surface, in the local frame; cylinders along x; unit vector
 //   spread   half angle of each arc, in radians; in [0.001, 1.57079637]
@@ -4501,7 +5232,10 @@ vec2 vair_satin_visible(vec3 w, float spread, vec2 edge) {
     float upper = psi < spread ? min(eta - psi, spread) : spread;
     return w.y < 0.0 ? vec2(-upper, -lower) : vec2(lower, upper);
 }
+#endif
 
+#ifndef VAIR_SATIN_HIGHLIGHT_RANGE_82D92576
+#define VAIR_SATIN_HIGHLIGHT_RANGE_82D92576
 // Middle and half width of the interval over which the highlight is integrated.
 //   g           vair_half_sum of l and v, with g.z > 0; in [-2, 2]
 //   visible     interval of the arc coordinate that l and v both see; in [-1.6, 1.6]
@@ -4519,7 +5253,10 @@ vec2 vair_satin_highlight_range(vec3 g, vec2 visible, float exponent, float devi
     float upper = min(visible.y, peak + reach);
     return vec2(0.5 * (lower + upper), 0.5 * max(upper - lower, 0.0));
 }
+#endif
 
+#ifndef VAIR_SATIN_NODE_3736BE09
+#define VAIR_SATIN_NODE_3736BE09
 // Integrand (N.l) (N.v) (N.h)^exponent at one point of the arc, N = (0, sin xi, cos xi).
 //   xi        arc coordinate, in radians; in [-1.6, 1.6]
 //   l         direction to the light, in the local frame; unit vector
@@ -4538,7 +5275,10 @@ float vair_satin_node(float xi, vec3 l, vec3 v, vec3 h, float exponent) {
     return facing * vair_cosine_power(min(h.x * h.x + across * across, 1.0), upright * upright,
         exponent);
 }
+#endif
 
+#ifndef VAIR_SATIN_PAIR_FF333A13
+#define VAIR_SATIN_PAIR_FF333A13
 // Sum of vair_satin_node at two points of the arc.
 //   middle    arc coordinate halfway between the points, in radians; in [-1.6, 1.6]
 //   offset    distance of each from the middle; in [0, 1.6]
@@ -4553,7 +5293,10 @@ float vair_satin_pair(float middle, float offset, vec3 l, vec3 v, vec3 h, float 
     return vair_satin_node(middle - offset, l, v, h, exponent)
         + vair_satin_node(middle + offset, l, v, h, exponent);
 }
+#endif
 
+#ifndef VAIR_SATIN_HIGHLIGHT_CBE7332A
+#define VAIR_SATIN_HIGHLIGHT_CBE7332A
 // Integral of (N.l) (N.v) (N.h)^exponent over the arc that l and v both see, by 12 nodes.
 //   l         direction to the light, in the local frame; unit vector
 //   v         direction to the viewer, in the local frame; unit vector
@@ -4577,7 +5320,10 @@ float vair_satin_highlight(vec3 l, vec3 v, vec2 visible, float exponent) {
     total = total + 0.047175337 * vair_satin_pair(x, 0.98156065 * r, l, v, h, exponent);
     return r * total;
 }
+#endif
 
+#ifndef VAIR_SATIN_DIFFUSE_95CBA687
+#define VAIR_SATIN_DIFFUSE_95CBA687
 // Reflectance per steradian of white Lambert cylinders along x.
 //   l        direction to the light, in the local frame; unit vector
 //   v        direction to the viewer, in the local frame; unit vector
@@ -4603,7 +5349,10 @@ float vair_satin_diffuse(vec3 l, vec3 v, vec2 visible, float pitch) {
     float total = 0.5 * (along * (x + sine) + across * difference);
     return 0.31830987 * max(total, 0.0) / max(pitch * l.z * v.z, 1e-37);
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_VALUE_F0ED121D
+#define VAIR_POULIN_FOURNIER_VALUE_F0ED121D
 // Reflectance of satin per steradian, without the cosine: parallel cylinders along x, one bounce.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4644,7 +5393,10 @@ float vair_poulin_fournier_value(vec3 l, vec3 v, float spread, float specular, f
         * highlight;
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_SATIN_HIGHLIGHT_EIGHT_692DB8C0
+#define VAIR_SATIN_HIGHLIGHT_EIGHT_692DB8C0
 // Integral of (N.l) (N.v) (N.h)^exponent over the arc that l and v both see, by 8 nodes.
 //   l         direction to the light, in the local frame; unit vector
 //   v         direction to the viewer, in the local frame; unit vector
@@ -4666,7 +5418,10 @@ float vair_satin_highlight_eight(vec3 l, vec3 v, vec2 visible, float exponent) {
     total = total + 0.101228535 * vair_satin_pair(x, 0.96028984 * r, l, v, h, exponent);
     return r * total;
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_VALUE_EIGHT_B7D036BD
+#define VAIR_POULIN_FOURNIER_VALUE_EIGHT_B7D036BD
 // Reflectance of satin per steradian with a coarser highlight: 8 nodes instead of 12. Variant of
 // vair_poulin_fournier_value.
 //   l           direction to the light, in the local frame; unit vector
@@ -4699,7 +5454,10 @@ float vair_poulin_fournier_value_eight(vec3 l, vec3 v, float spread, float specu
         * highlight;
     return (l.z > 0.0 && v.z > 0.0) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_PUNCTUAL_RADIANCE_22784D46
+#define VAIR_PUNCTUAL_RADIANCE_22784D46
 // Radiance that a surface reflects from a point or directional light.
 //   brdf        reflectance of the surface per steradian, as the value functions of lobes return
 //               it; in [0, 100000000]
@@ -4715,7 +5473,10 @@ float vair_poulin_fournier_value_eight(vec3 l, vec3 v, float spread, float specu
 vec3 vair_punctual_radiance(vec3 brdf, vec3 light, float n_dot_l) {
     return 3.1415927 * max(n_dot_l, 0.0) * (brdf * light);
 }
+#endif
 
+#ifndef VAIR_STRAND_LOBE_DEFECT_B0DB3039
+#define VAIR_STRAND_LOBE_DEFECT_B0DB3039
 // Defect 1 - cos(delta) of the angle delta by which l misses the cone of mirror directions around
 // x.
 //   l        direction to the light, in the local frame; unit vector
@@ -4730,7 +5491,10 @@ float vair_strand_lobe_defect(vec3 l, vec3 v) {
     float along = l.x + v.x;
     return min(0.5 * (difference * difference + along * along), 2.0);
 }
+#endif
 
+#ifndef VAIR_STRAND_MIXTURE_E9038C61
+#define VAIR_STRAND_MIXTURE_E9038C61
 // Shares of the two densities of delta that vair_strand_sample mixes.
 //   v         direction to the viewer, in the local frame; unit vector
 //   exponent  p, sharpness of the lobe; in [0, 100000]
@@ -4747,7 +5511,10 @@ vec2 vair_strand_mixture(vec3 v, float exponent) {
     float k = 1.0 / (bell + lobe);
     return vec2(lobe * k, bell * k);
 }
+#endif
 
+#ifndef VAIR_STRAND_PDF_70937F58
+#define VAIR_STRAND_PDF_70937F58
 // Density with which vair_strand_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4782,7 +5549,10 @@ float vair_strand_pdf(vec3 l, vec3 v, float exponent) {
     float pdf = 0.15915494 * m * vair_pow_one_minus(q, exponent) * shape;
     return q < 0.99999994 ? pdf : 0.0;
 }
+#endif
 
+#ifndef VAIR_STRAND_SAMPLE_C7F515E7
+#define VAIR_STRAND_SAMPLE_C7F515E7
 // Direction to the light, drawn with density vair_strand_pdf: near the cone of mirror directions
 // around x.
 //   u           pair of uniform numbers in [0, 1); u.x = 0 is on the cone
@@ -4821,7 +5591,10 @@ vec3 vair_strand_sample(vec2 u, vec3 v, float exponent) {
     float elevation = (take_raised ? s : -s) * from_axis - c * v.x;
     return normalize(vec3(elevation, (take_raised ? raised : lowered) * vair_unit_circle(turns)));
 }
+#endif
 
+#ifndef VAIR_STRAND_VALUE_67FB3C34
+#define VAIR_STRAND_VALUE_67FB3C34
 // Highlight of a strand along x, on the whole sphere of l and v; not normalised.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4842,7 +5615,10 @@ float vair_strand_value(vec3 l, vec3 v, float exponent) {
     float q = vair_strand_lobe_defect(l, v);
     return q < 1.0 ? vair_pow_one_minus(q, exponent) : 0.0;
 }
+#endif
 
+#ifndef VAIR_WARD_PDF_24CDE17D
+#define VAIR_WARD_PDF_24CDE17D
 // Density with which vair_ward_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4871,7 +5647,10 @@ float vair_ward_pdf(vec3 l, vec3 v, float alpha_x, float alpha_y) {
     float pdf = bell * (0.15915494 / (alpha_x * alpha_y)) / max(abs(g.z), 1e-18);
     return stretched < 80.0 * upright ? pdf : 0.0;
 }
+#endif
 
+#ifndef VAIR_WARD_SAMPLE_602D284C
+#define VAIR_WARD_SAMPLE_602D284C
 // Direction to the light, drawn with density vair_ward_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4891,7 +5670,10 @@ vec3 vair_ward_sample(vec2 u, vec3 v, float alpha_x, float alpha_y) {
     vec3 h = normalize(vec3(alpha_x * radius * circle.x, alpha_y * radius * circle.y, 1.0));
     return normalize(vair_mirror(v, h));
 }
+#endif
 
+#ifndef VAIR_WARD_VALUE_B65619DA
+#define VAIR_WARD_VALUE_B65619DA
 // Reflectance of the Ward lobe with bounded albedo per steradian, without the cosine, Fresnel
 // factor 1.
 //   l           direction to the light, in the local frame; unit vector
@@ -4923,7 +5705,10 @@ float vair_ward_value(vec3 l, vec3 v, float alpha_x, float alpha_y) {
     float value = bell * (0.31830987 / (alpha_x * alpha_y)) / max(planar + upright, 1e-20);
     return (l.z > 0.0 && v.z > 0.0 && stretched < 80.0 * upright) ? value : 0.0;
 }
+#endif
 
+#ifndef VAIR_CUBE_SOLID_ANGLE_A14045AC
+#define VAIR_CUBE_SOLID_ANGLE_A14045AC
 // Solid angle of the texel centred at a point of one face of a cube map.
 //   uv          texture coordinates of the texel's centre on its face; in [0, 1]
 //   size        texels along each side of the face; in [1, 65536]
@@ -4938,7 +5723,10 @@ float vair_cube_solid_angle(vec2 uv, float size) {
     float side = 2.0 / size;
     return side * side * (r * r * r);
 }
+#endif
 
+#ifndef VAIR_DUAL_PARABOLOID_DIRECTION_0ADF7029
+#define VAIR_DUAL_PARABOLOID_DIRECTION_0ADF7029
 // Direction of a point of a dual-paraboloid map; undoes vair_dual_paraboloid_uv.
 //   uv          texture coordinates; in [0, 1]
 //   back        above 1/2: the half around -z; otherwise the half around +z; in [0, 1]
@@ -4956,7 +5744,10 @@ vec3 vair_dual_paraboloid_direction(vec2 uv, float back, float border) {
     float z = (1.0 - square) * k;
     return vec3(2.0 * k * s, back > 0.5 ? -z : z);
 }
+#endif
 
+#ifndef VAIR_DUAL_PARABOLOID_SOLID_ANGLE_C131BF25
+#define VAIR_DUAL_PARABOLOID_SOLID_ANGLE_C131BF25
 // Solid angle of the texel that a direction falls into, for choosing its mip level.
 //   z           component w.z of the direction looked up; in [-1, 1]
 //   width       texels of one half along u; in [1, 65536]
@@ -4975,7 +5766,10 @@ float vair_dual_paraboloid_solid_angle(float z, float width, float height, float
     float scale = 2.0 * border * depth;
     return scale / width * (scale / height);
 }
+#endif
 
+#ifndef VAIR_DUAL_PARABOLOID_UV_C2736232
+#define VAIR_DUAL_PARABOLOID_UV_C2736232
 // Place of a direction in a dual-paraboloid map: two discs, around +z and around -z.
 //   w           direction; unit vector
 //   border      half side of each square in units of the disc radius, at least 1; 1.2 leaves a rim
@@ -4992,7 +5786,10 @@ vair_DualParaboloid vair_dual_paraboloid_uv(vec3 w, float border) {
     vec2 uv = clamp(k * w.xy + vec2(0.5), vec2(0.0), vec2(1.0));
     return vair_DualParaboloid(uv, w.z < 0.0 ? 1.0 : 0.0);
 }
+#endif
 
+#ifndef VAIR_LATLONG_UV_E9184970
+#define VAIR_LATLONG_UV_E9184970
 // Texture coordinates of a direction in a latitude-longitude map with y up.
 //   w           direction; unit vector
 //   returns     (1/2 + atan2(w.x, -w.z) / (2 pi), atan2(length(w.xz), w.y) / pi), in [0, 1]^2: v =
@@ -5007,7 +5804,10 @@ vair_DualParaboloid vair_dual_paraboloid_uv(vec3 w, float border) {
 vec2 vair_latlong_uv(vec3 w) {
     return vec2(0.5 + vair_turn_of(w.x, -w.z), 2.0 * vair_turn_of(length(vec2(w.x, w.z)), w.y));
 }
+#endif
 
+#ifndef VAIR_ENVIRONMENT_LATLONG_2D0F1955
+#define VAIR_ENVIRONMENT_LATLONG_2D0F1955
 // Light that comes from a direction, from a latitude-longitude map with its levels.
 //   environment  the map, linear RGB, in the layout of vair_latlong_uv; linear filter within and
 //                between levels; repeat in u, clamp in v
@@ -5025,7 +5825,10 @@ vec2 vair_latlong_uv(vec3 w) {
 vec3 vair_environment_latlong(sampler2D environment, vec3 w, float lod) {
     return textureLod(environment, vair_latlong_uv(w), lod).xyz;
 }
+#endif
 
+#ifndef VAIR_LATLONG_DIRECTION_732C1E05
+#define VAIR_LATLONG_DIRECTION_732C1E05
 // Direction of a point of a latitude-longitude map with y up; undoes vair_latlong_uv.
 //   uv          texture coordinates: v from the top, u = 1/2 toward -z and growing toward +x; in
 //               [0, 1]
@@ -5040,7 +5843,10 @@ vec3 vair_latlong_direction(vec2 uv) {
     vec2 azimuth = vair_unit_circle(uv.x);
     return vec3(-polar.y * azimuth.y, polar.x, polar.y * azimuth.x);
 }
+#endif
 
+#ifndef VAIR_LATLONG_SOLID_ANGLE_B1CDF891
+#define VAIR_LATLONG_SOLID_ANGLE_B1CDF891
 // Solid angle of the texel centred at height v of a latitude-longitude map.
 //   v           texture coordinate of the texel's centre, from the top; in [0, 1]
 //   width       texels along u; in [1, 65536]
@@ -5057,7 +5863,10 @@ vec3 vair_latlong_direction(vec2 uv) {
 float vair_latlong_solid_angle(float v, float width, float height) {
     return 12.566371 / width * vair_unit_circle(0.5 * v).y * vair_unit_circle(0.25 / height).y;
 }
+#endif
 
+#ifndef VAIR_LOD_FROM_PDF_8EB6CA48
+#define VAIR_LOD_FROM_PDF_8EB6CA48
 // Mip level whose texels cover as much as one sample stands for.
 //   pdf                density of the sample per steradian; in [0, 1e20]
 //   samples            number of samples drawn; in [1, 1000000]
@@ -5076,7 +5885,10 @@ float vair_lod_from_pdf(float pdf, float samples, float texel_solid_angle, float
     float ratio = samples * pdf * texel_solid_angle;
     return max(lod_bias - 0.5 * log2(max(ratio, 1e-30)), 0.0);
 }
+#endif
 
+#ifndef VAIR_MIS_BALANCE_6EF56275
+#define VAIR_MIS_BALANCE_6EF56275
 // Weight of a sample of technique a when techniques a and b are combined, by the balance heuristic.
 //   samples_a   samples drawn by technique a; in [1, 1000000]
 //   pdf_a       density of technique a at the sample, per steradian; in [0, 1e20]
@@ -5097,7 +5909,10 @@ float vair_mis_balance(float samples_a, float pdf_a, float samples_b, float pdf_
     float b = samples_b * pdf_b;
     return a / max(a + b, 1.2e-38);
 }
+#endif
 
+#ifndef VAIR_MIS_POWER_A52CC826
+#define VAIR_MIS_POWER_A52CC826
 // Weight of a sample of technique a when techniques a and b are combined, by the power heuristic.
 //   samples_a   samples drawn by technique a; in [1, 1000000]
 //   pdf_a       density of technique a at the sample, per steradian; in [0, 1e20]
@@ -5119,7 +5934,10 @@ float vair_mis_power(float samples_a, float pdf_a, float samples_b, float pdf_b)
     float square_a = share_a * share_a;
     return square_a / max(square_a + share_b * share_b, 1.2e-38);
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_FOLD_F7116F82
+#define VAIR_OCTAHEDRAL_FOLD_F7116F82
 // Move both coordinates away from 0 by an amount.
 //   p        point of the octahedral square, or w.xy; in [-1, 1]
 //   amount   distance, negative toward 0; in [-1, 1]
@@ -5129,7 +5947,10 @@ float vair_mis_power(float samples_a, float pdf_a, float samples_b, float pdf_b)
 vec2 vair_octahedral_fold(vec2 p, float amount) {
     return p + vec2(p.x >= 0.0 ? amount : -amount, p.y >= 0.0 ? amount : -amount);
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_DECODE_E3C1EBF5
+#define VAIR_OCTAHEDRAL_DECODE_E3C1EBF5
 // Direction of a point of an octahedral map; undoes vair_octahedral_encode.
 //   uv          texture coordinates; opposite points of an edge of the square mean one direction;
 //               in [0, 1]
@@ -5146,7 +5967,10 @@ vec3 vair_octahedral_decode(vec2 uv) {
     float z = 1.0 - abs(p.x) - abs(p.y);
     return normalize(vec3(vair_octahedral_fold(p, -max(-z, 0.0)), z));
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_ENCODE_4EE5EFF1
+#define VAIR_OCTAHEDRAL_ENCODE_4EE5EFF1
 // Texture coordinates of a direction in an octahedral map.
 //   w           direction; unit vector
 //   returns     point of [0, 1]^2; w = (0, 0, 1) is the centre, (0, 0, -1) the corner (1, 1)
@@ -5163,7 +5987,10 @@ vec2 vair_octahedral_encode(vec3 w) {
     float k = 0.5 / (abs(w.x) + abs(w.y) + abs(w.z));
     return clamp(k * p + vec2(0.5), vec2(0.0), vec2(1.0));
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_SOLID_ANGLE_1A211FC9
+#define VAIR_OCTAHEDRAL_SOLID_ANGLE_1A211FC9
 // Solid angle of the texel centred at a point of an octahedral map.
 //   uv          texture coordinates of the texel's centre; in [0, 1]
 //   size        texels along each side; in [1, 65536]
@@ -5182,7 +6009,10 @@ float vair_octahedral_solid_angle(vec2 uv, float size) {
     float side = 2.0 / size;
     return side * side * (r * r * r);
 }
+#endif
 
+#ifndef VAIR_PARABOLIC_DIRECTION_A4F3F584
+#define VAIR_PARABOLIC_DIRECTION_A4F3F584
 // Direction of a point of a paraboloid map around +z; undoes vair_parabolic_uv.
 //   uv          texture coordinates; points outside the disc of radius 1/2 around (1/2, 1/2) look
 //               down; in [-1000, 1000]
@@ -5197,7 +6027,10 @@ vec3 vair_parabolic_direction(vec2 uv) {
     float k = 1.0 / (1.0 + square);
     return vec3(2.0 * k * s, (1.0 - square) * k);
 }
+#endif
 
+#ifndef VAIR_PARABOLIC_UV_D01CF26E
+#define VAIR_PARABOLIC_UV_D01CF26E
 // Texture coordinates of a direction in a paraboloid map around +z.
 //   w           direction; unit vector
 //   returns     w.xy / (2 (1 + w.z)) + 1/2; the half w.z >= 0 fills the disc around (1/2, 1/2) of
@@ -5214,7 +6047,10 @@ vec2 vair_parabolic_uv(vec3 w) {
     float depth = w.z >= 0.0 ? 1.0 + w.z : below;
     return 0.5 / max(depth, 1e-6) * w.xy + vec2(0.5);
 }
+#endif
 
+#ifndef VAIR_ENV_LOD_E5F9478F
+#define VAIR_ENV_LOD_E5F9478F
 // Level of a dual-paraboloid map whose texels are as large as what one sample stands for.
 //   env      the map; linear filter within and between levels; clamp in u, clamp in v
 //   w        direction of the sample; unit vector
@@ -5228,7 +6064,10 @@ float vair_env_lod(sampler2D env, vec3 w, float pdf, float samples) {
     return vair_lod_from_pdf(pdf, samples, vair_dual_paraboloid_solid_angle(w.z, size, size, 1.2),
         0.0);
 }
+#endif
 
+#ifndef VAIR_ENV_DISC_ACD9F17B
+#define VAIR_ENV_DISC_ACD9F17B
 // Light at a place of one disc of a dual-paraboloid map, in one of its levels.
 //   env      the map; linear filter within and between levels; clamp in u, clamp in v
 //   disc     place in units of the disc radius; beyond 1 it lies in the border; in [-1.2, 1.2]
@@ -5245,7 +6084,10 @@ vec3 vair_env_disc(sampler2D env, vec2 disc, float back, uint mip, float texel) 
     vec2 place = clamp(0.41666666 * disc + vec2(0.5), vec2(margin), vec2(1.0 - margin));
     return textureLod(env, vec2(0.5 * (place.x + back), place.y), float(mip)).xyz;
 }
+#endif
 
+#ifndef VAIR_ENV_LEVEL_64C214CB
+#define VAIR_ENV_LEVEL_64C214CB
 // Light that comes from a direction, from one level of a dual-paraboloid map.
 //   env      the map; linear filter within and between levels; clamp in u, clamp in v
 //   w        direction that the light comes from; unit vector
@@ -5269,7 +6111,10 @@ vec3 vair_env_level(sampler2D env, vec3 w, uint mip) {
     float share = 0.5 + 0.5 * height / reach;
     return share * own + (1.0 - share) * other;
 }
+#endif
 
+#ifndef VAIR_ENV_RADIANCE_5DCD0EAB
+#define VAIR_ENV_RADIANCE_5DCD0EAB
 // Light that comes from a direction, from a dual-paraboloid map with its levels, as `vair env`
 // writes it.
 //   env         2 n by n texels, n a power of two: the disc around +z left, the disc around -z
@@ -5294,7 +6139,10 @@ vec3 vair_env_radiance(sampler2D env, vec3 w, float lod) {
     return (1.0 - share) * vair_env_level(env, w, larger) + share
         * vair_env_level(env, w, larger + 1u);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_ASHIKHMIN_SHIRLEY_C13C2DA4
+#define VAIR_ENV_GRID_ASHIKHMIN_SHIRLEY_C13C2DA4
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, from a fixed grid of
 // directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
@@ -5340,7 +6188,10 @@ vec3 vair_env_grid_ashikhmin_shirley(sampler2D env, vair_Frame frame, vec3 v, ui
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_ASHIKHMIN_SHIRLEY_E65ACC1E
+#define VAIR_ENV_MONTE_CARLO_ASHIKHMIN_SHIRLEY_E65ACC1E
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5377,7 +6228,10 @@ vec3 vair_env_monte_carlo_ashikhmin_shirley(sampler2D env, vair_Frame frame, vec
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_ASHIKHMIN_SHIRLEY_BB35E7EC
+#define VAIR_ENV_FILTERED_ASHIKHMIN_SHIRLEY_BB35E7EC
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, by filtered importance
 // sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
@@ -5418,7 +6272,10 @@ vec3 vair_env_filtered_ashikhmin_shirley(sampler2D env, vair_Frame frame, vec3 v
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_ASHIKHMIN_SHIRLEY_B78DD34C
+#define VAIR_ENV_GUARDED_ASHIKHMIN_SHIRLEY_B78DD34C
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, filtered only where that
 // helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
@@ -5463,7 +6320,10 @@ vec3 vair_env_guarded_ashikhmin_shirley(sampler2D env, vair_Frame frame, vec3 v,
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_BLINN_PHONG_EB25B299
+#define VAIR_ENV_GRID_BLINN_PHONG_EB25B299
 // Light that a Blinn-Phong lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5507,7 +6367,10 @@ vec3 vair_env_grid_blinn_phong(sampler2D env, vair_Frame frame, vec3 v, uint sam
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_BLINN_PHONG_0F90983C
+#define VAIR_ENV_MONTE_CARLO_BLINN_PHONG_0F90983C
 // Light that a Blinn-Phong lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5542,7 +6405,10 @@ vec3 vair_env_monte_carlo_blinn_phong(sampler2D env, vair_Frame frame, vec3 v, u
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_BLINN_PHONG_250AA1E4
+#define VAIR_ENV_FILTERED_BLINN_PHONG_250AA1E4
 // Light that a Blinn-Phong lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5580,7 +6446,10 @@ vec3 vair_env_filtered_blinn_phong(sampler2D env, vair_Frame frame, vec3 v, uint
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_BLINN_PHONG_F25BB72B
+#define VAIR_ENV_GUARDED_BLINN_PHONG_F25BB72B
 // Light that a Blinn-Phong lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5622,7 +6491,10 @@ vec3 vair_env_guarded_blinn_phong(sampler2D env, vair_Frame frame, vec3 v, uint 
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_GGX_E8DA28E2
+#define VAIR_ENV_GRID_GGX_E8DA28E2
 // Light that a GGX lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5667,7 +6539,10 @@ vec3 vair_env_grid_ggx(sampler2D env, vair_Frame frame, vec3 v, uint samples, ve
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_GGX_34621158
+#define VAIR_ENV_MONTE_CARLO_GGX_34621158
 // Light that a GGX lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5703,7 +6578,10 @@ vec3 vair_env_monte_carlo_ggx(sampler2D env, vair_Frame frame, vec3 v, uint samp
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_GGX_C8262AF2
+#define VAIR_ENV_FILTERED_GGX_C8262AF2
 // Light that a GGX lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5742,7 +6620,10 @@ vec3 vair_env_filtered_ggx(sampler2D env, vair_Frame frame, vec3 v, uint samples
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_GGX_C9DA27A8
+#define VAIR_ENV_GUARDED_GGX_C9DA27A8
 // Light that a GGX lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5785,7 +6666,10 @@ vec3 vair_env_guarded_ggx(sampler2D env, vair_Frame frame, vec3 v, uint samples,
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_LAMBERT_C3FC3080
+#define VAIR_ENV_GRID_LAMBERT_C3FC3080
 // Light that a Lambert lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5827,7 +6711,10 @@ vec3 vair_env_grid_lambert(sampler2D env, vair_Frame frame, vec3 v, uint samples
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_LAMBERT_919FFBD2
+#define VAIR_ENV_MONTE_CARLO_LAMBERT_919FFBD2
 // Light that a Lambert lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5861,7 +6748,10 @@ vec3 vair_env_monte_carlo_lambert(sampler2D env, vair_Frame frame, vec3 v, uint 
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_LAMBERT_776E8365
+#define VAIR_ENV_FILTERED_LAMBERT_776E8365
 // Light that a Lambert lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5897,7 +6787,10 @@ vec3 vair_env_filtered_lambert(sampler2D env, vair_Frame frame, vec3 v, uint sam
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_LAMBERT_A2B7D548
+#define VAIR_ENV_GUARDED_LAMBERT_A2B7D548
 // Light that a Lambert lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5937,7 +6830,10 @@ vec3 vair_env_guarded_lambert(sampler2D env, vair_Frame frame, vec3 v, uint samp
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_PHONG_0AD4EF23
+#define VAIR_ENV_GRID_PHONG_0AD4EF23
 // Light that a Phong lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5981,7 +6877,10 @@ vec3 vair_env_grid_phong(sampler2D env, vair_Frame frame, vec3 v, uint samples, 
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_PHONG_8648AF35
+#define VAIR_ENV_MONTE_CARLO_PHONG_8648AF35
 // Light that a Phong lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6016,7 +6915,10 @@ vec3 vair_env_monte_carlo_phong(sampler2D env, vair_Frame frame, vec3 v, uint sa
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_PHONG_B06B9AEF
+#define VAIR_ENV_FILTERED_PHONG_B06B9AEF
 // Light that a Phong lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6054,7 +6956,10 @@ vec3 vair_env_filtered_phong(sampler2D env, vair_Frame frame, vec3 v, uint sampl
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_PHONG_11D4E1F2
+#define VAIR_ENV_GUARDED_PHONG_11D4E1F2
 // Light that a Phong lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6096,7 +7001,10 @@ vec3 vair_env_guarded_phong(sampler2D env, vair_Frame frame, vec3 v, uint sample
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_POULIN_FOURNIER_842BDA91
+#define VAIR_ENV_GRID_POULIN_FOURNIER_842BDA91
 // Light that satin reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6142,7 +7050,10 @@ vec3 vair_env_grid_poulin_fournier(sampler2D env, vair_Frame frame, vec3 v, uint
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_POULIN_FOURNIER_27345438
+#define VAIR_ENV_MONTE_CARLO_POULIN_FOURNIER_27345438
 // Light that satin reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6180,7 +7091,10 @@ vec3 vair_env_monte_carlo_poulin_fournier(sampler2D env, vair_Frame frame, vec3 
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_POULIN_FOURNIER_A9996DBB
+#define VAIR_ENV_FILTERED_POULIN_FOURNIER_A9996DBB
 // Light that satin reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6221,7 +7135,10 @@ vec3 vair_env_filtered_poulin_fournier(sampler2D env, vair_Frame frame, vec3 v, 
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_POULIN_FOURNIER_FE5532CD
+#define VAIR_ENV_GUARDED_POULIN_FOURNIER_FE5532CD
 // Light that satin reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6266,7 +7183,10 @@ vec3 vair_env_guarded_poulin_fournier(sampler2D env, vair_Frame frame, vec3 v, u
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_PREFILTERED_AAF833CD
+#define VAIR_ENV_PREFILTERED_AAF833CD
 // Light that a power of the cosine gathers about a direction, from a map convolved with that lobe.
 //   env         what `vair env --prefilter EXPONENT` writes for one exponent p, in the layout of
 //               vair_env_radiance. Only its largest level is read; it needs no others; linear
@@ -6286,7 +7206,10 @@ vec3 vair_env_guarded_poulin_fournier(sampler2D env, vair_Frame frame, vec3 v, u
 vec3 vair_env_prefiltered(sampler2D env, vec3 w) {
     return vair_env_level(env, w, 0u);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_STRAND_312C0D05
+#define VAIR_ENV_GRID_STRAND_312C0D05
 // Light that a strand reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6330,7 +7253,10 @@ vec3 vair_env_grid_strand(sampler2D env, vair_Frame frame, vec3 v, uint samples,
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_STRAND_351EA708
+#define VAIR_ENV_MONTE_CARLO_STRAND_351EA708
 // Light that a strand reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6364,7 +7290,10 @@ vec3 vair_env_monte_carlo_strand(sampler2D env, vair_Frame frame, vec3 v, uint s
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_STRAND_39F68D36
+#define VAIR_ENV_FILTERED_STRAND_39F68D36
 // Light that a strand reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6401,7 +7330,10 @@ vec3 vair_env_filtered_strand(sampler2D env, vair_Frame frame, vec3 v, uint samp
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_STRAND_8FDF5BA6
+#define VAIR_ENV_GUARDED_STRAND_8FDF5BA6
 // Light that a strand reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6442,7 +7374,10 @@ vec3 vair_env_guarded_strand(sampler2D env, vair_Frame frame, vec3 v, uint sampl
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_WARD_A2953520
+#define VAIR_ENV_GRID_WARD_A2953520
 // Light that a Ward lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6487,7 +7422,10 @@ vec3 vair_env_grid_ward(sampler2D env, vair_Frame frame, vec3 v, uint samples, v
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_WARD_0B8F89EF
+#define VAIR_ENV_MONTE_CARLO_WARD_0B8F89EF
 // Light that a Ward lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6523,7 +7461,10 @@ vec3 vair_env_monte_carlo_ward(sampler2D env, vair_Frame frame, vec3 v, uint sam
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_WARD_A8A67DC3
+#define VAIR_ENV_FILTERED_WARD_A8A67DC3
 // Light that a Ward lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6562,7 +7503,10 @@ vec3 vair_env_filtered_ward(sampler2D env, vair_Frame frame, vec3 v, uint sample
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_WARD_4B49ACD4
+#define VAIR_ENV_GUARDED_WARD_4B49ACD4
 // Light that a Ward lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6605,7 +7549,10 @@ vec3 vair_env_guarded_ward(sampler2D env, vair_Frame frame, vec3 v, uint samples
     }
     return total / float(count);
 }
+#endif
 
+#ifndef VAIR_FACTORED_SHADE_CBA93147
+#define VAIR_FACTORED_SHADE_CBA93147
 // Light from one direction that a factored reflectance sends to the viewer, for light of 1.
 //   p           factor of the directions to light and viewer, over vair_parabolic_uv; linear filter
 //               within and between levels; clamp in u, clamp in v
@@ -6631,7 +7578,10 @@ vec3 vair_factored_shade(sampler2D p, sampler2D q, vec3 l, vec3 v, vec3 scale) {
     vec3 product = sides * textureLod(q, vair_parabolic_uv(vair_half_vector(l, v)), 0.0).xyz;
     return max(l.z, 0.0) * (scale * product);
 }
+#endif
 
+#ifndef VAIR_ANGLE_TABLE_LOOKUP_313E9728
+#define VAIR_ANGLE_TABLE_LOOKUP_313E9728
 // Bilinear lookup in a table whose ends are the centres of its outermost texels.
 //   table    values of any size; linear filter within and between levels; clamp in u, clamp in v
 //   uv       coordinates of both angles, 0 and 1 at the ends of the axes; in [0, 1]
@@ -6642,7 +7592,10 @@ vec4 vair_angle_table_lookup(sampler2D table, vec2 uv) {
     vec2 margin = vec2(0.5) / vec2(textureSize(table, 0));
     return textureLod(table, margin + uv * (vec2(1.0) - 2.0 * margin), 0.0);
 }
+#endif
 
+#ifndef VAIR_ANGLE_SHARE_F13031E6
+#define VAIR_ANGLE_SHARE_F13031E6
 // Angle whose sine is c, from -pi / 2 to pi / 2, as a coordinate from 0 to 1.
 //   c           cosine of the angle with an axis; in [-1, 1]
 //   returns     asin(c) / pi + 1/2, in [0, 1]; 1/2 exactly at 0
@@ -6658,7 +7611,10 @@ float vair_angle_share(float c) {
         * (0.5 + a * (-0.068307295 + a * (0.028283684 + a * high)));
     return c >= 0.0 ? 1.0 - share : share;
 }
+#endif
 
+#ifndef VAIR_STRAND_TABLE_UV_5A61276B
+#define VAIR_STRAND_TABLE_UV_5A61276B
 // Coordinates of a table over the angles of light and viewer with a strand: axes warped by the arc
 // sine.
 //   cos_l       t.l, cosine between the tangent and the direction to the light; in [-1, 1]
@@ -6675,7 +7631,10 @@ float vair_angle_share(float c) {
 vec2 vair_strand_table_uv(float cos_l, float cos_v) {
     return vec2(vair_angle_share(cos_l), vair_angle_share(cos_v));
 }
+#endif
 
+#ifndef VAIR_FACTORED_STRAND_SHADE_55F643B6
+#define VAIR_FACTORED_STRAND_SHADE_55F643B6
 // Light from one direction that a reflectance in four factors sends to the viewer, for light of 1.
 //   p           factor of the directions to light and viewer, over vair_parabolic_uv; linear filter
 //               within and between levels; clamp in u, clamp in v
@@ -6699,7 +7658,10 @@ vec3 vair_factored_strand_shade(sampler2D p, sampler2D q, sampler2D r, vec3 l, v
     return vair_angle_table_lookup(r, vair_strand_table_uv(l.x, v.x)).xyz
         * vair_factored_shade(p, q, l, v, scale);
 }
+#endif
 
+#ifndef VAIR_ACROSS_SHARE_D4636E7C
+#define VAIR_ACROSS_SHARE_D4636E7C
 // Angle of a direction about the tangent x, from -y over the normal z to y, as a coordinate from 0
 // to 1.
 //   w           direction in the local frame; unit vector
@@ -6711,7 +7673,10 @@ vec3 vair_factored_strand_shade(sampler2D p, sampler2D q, sampler2D r, vec3 l, v
 float vair_across_share(vec3 w) {
     return clamp(0.5 + 2.0 * vair_turn_of(w.y, w.z), 0.0, 1.0);
 }
+#endif
 
+#ifndef VAIR_FACTORED_SATIN_SHADE_0FEB8C00
+#define VAIR_FACTORED_SATIN_SHADE_0FEB8C00
 // Light from one direction that cloth in four factors sends to the viewer, for light of 1.
 //   p           factor of the directions to light and viewer, over vair_parabolic_uv; linear filter
 //               within and between levels; clamp in u, clamp in v
@@ -6736,7 +7701,10 @@ vec3 vair_factored_satin_shade(sampler2D p, sampler2D q, sampler2D r, vec3 l, ve
     vec3 turned = vair_angle_table_lookup(r, vec2(vair_across_share(l), vair_across_share(v))).xyz;
     return turned * vair_factored_shade(p, q, l, v, scale);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_TABLE_DD635CEB
+#define VAIR_STRAND_COSINE_TABLE_DD635CEB
 // Cosine between the viewer and the best mirror direction of a strand, read from a table.
 //   table       the strand cosine over vair_strand_table_uv in its first channel, as `vair table
 //               vair_strand_cosine` writes it; any size; linear filter within and between levels;
@@ -6755,5 +7723,4 @@ vec3 vair_factored_satin_shade(sampler2D p, sampler2D q, sampler2D r, vec3 l, ve
 float vair_strand_cosine_table(sampler2D table, float cos_l, float cos_v) {
     return vair_angle_table_lookup(table, vair_strand_table_uv(cos_l, cos_v)).x;
 }
-
 #endif

@@ -8,9 +8,8 @@
 // colours linear RGB. Finite input inside the stated domain gives a finite result. An error is
 // declared: no driver measured exceeds it; guaranteed is what the specification permits at worst.
 
-#ifndef VAIR_OPENCL_INCLUDED
-#define VAIR_OPENCL_INCLUDED
-
+#ifndef VAIR_LOOKUP_PACKED_1E298308
+#define VAIR_LOOKUP_PACKED_1E298308
 // One level of a map whose levels lie side by side in one image, each with a border of one texel
 // that continues it beyond its edges.
 //   t         the image; linear, unnormalised, clamped to the edge is what its sampler has to be
@@ -30,7 +29,10 @@ static inline float4 vair_lookup_packed(
     float y = (t_layout.w & 2) != 0 ? uv.y - floor(uv.y) : clamp(uv.y, 0.0f, 1.0f);
     return read_imagef(t, t_sampler, (float2)((float)column, 1.0f) + (float2)(x, y) * size);
 }
+#endif
 
+#ifndef VAIR_LOOKUP_LEVEL_629023A0
+#define VAIR_LOOKUP_LEVEL_629023A0
 // Lookup in two levels of such a map, linear between them.
 //   t, t_sampler, t_layout, uv  as above
 //   lod                         in levels from the largest, at least 0; the last one stays
@@ -45,7 +47,10 @@ static inline float4 vair_lookup_level(
     float4 b = vair_lookup_packed(t, t_sampler, t_layout, uv, min(first + 1, t_layout.z - 1));
     return a + (held - (float)first) * (b - a);
 }
+#endif
 
+#ifndef VAIR_FRAME_1CE87780
+#define VAIR_FRAME_1CE87780
 // Right-handed orthonormal frame; local coordinates are x along the tangent, y bitangent, z normal.
 //   tangent    unit vector, x axis
 //   bitangent  unit vector, y axis: normal x tangent
@@ -55,7 +60,10 @@ typedef struct vair_Frame {
     float3 bitangent;
     float3 normal;
 } vair_Frame;
+#endif
 
+#ifndef VAIR_STRANDANGLES_1A295301
+#define VAIR_STRANDANGLES_1A295301
 // Angles of light and viewer to a strand.
 //   cos_l   cosine of the angle between tangent and light: t.l; in [-1, 1]
 //   cos_v   cosine of the angle between tangent and viewer: t.v; in [-1, 1]
@@ -69,7 +77,10 @@ typedef struct vair_StrandAngles {
     float sin_v;
     float defect;
 } vair_StrandAngles;
+#endif
 
+#ifndef VAIR_FURCOAT_0E4EDA80
+#define VAIR_FURCOAT_0E4EDA80
 // Average geometry of the hairs around a point; one unit of length throughout.
 //   density      hairs per unit of skin area; in [0, 1e9]
 //   hair_length  length of a hair; in [0, 1000]
@@ -81,7 +92,10 @@ typedef struct vair_FurCoat {
     float radius_base;
     float radius_tip;
 } vair_FurCoat;
+#endif
 
+#ifndef VAIR_FURGEOMETRY_150FFD90
+#define VAIR_FURGEOMETRY_150FFD90
 // One light and the viewer as the hairs of a coat see them.
 //   sin_l           sine of the angle between hair and light; in [0, 1]
 //   azimuth_cosine  cosine of the angle between light and viewer around the hair; in [-1, 1]
@@ -97,7 +111,10 @@ typedef struct vair_FurGeometry {
     float depth_view;
     float depth_light;
 } vair_FurGeometry;
+#endif
 
+#ifndef VAIR_FURWEIGHTS_797C5EC8
+#define VAIR_FURWEIGHTS_797C5EC8
 // What hair and skin contribute to the light that leaves a coat.
 //   hair  weight of the reflectance of a single hair; in [0, 1]
 //   skin  weight of the reflectance of the skin; in [0, 1]
@@ -105,7 +122,10 @@ typedef struct vair_FurWeights {
     float hair;
     float skin;
 } vair_FurWeights;
+#endif
 
+#ifndef VAIR_FUROPTICS_BBD40A91
+#define VAIR_FUROPTICS_BBD40A91
 // How the hairs of a coat reflect, transmit and shadow.
 //   k_diffuse     diffuse colour of a hair; in [0, 1]
 //   k_specular    colour of the highlight; in [0, 1]
@@ -129,7 +149,10 @@ typedef struct vair_FurOptics {
     float cos_lit;
     float overlap;
 } vair_FurOptics;
+#endif
 
+#ifndef VAIR_FURAVERAGE_6E7671A6
+#define VAIR_FURAVERAGE_6E7671A6
 // Average direction of the hairs in a footprint, and how far single hairs stray from it.
 //   tangent   mean hair direction; unit vector
 //   variance  variance of a hair direction about the mean along each perpendicular axis, in radian
@@ -138,7 +161,10 @@ typedef struct vair_FurAverage {
     float3 tangent;
     float variance;
 } vair_FurAverage;
+#endif
 
+#ifndef VAIR_DUALPARABOLOID_B8D0FAC4
+#define VAIR_DUALPARABOLOID_B8D0FAC4
 // A place in a dual-paraboloid map.
 //   uv    texture coordinates in [0, 1]^2
 //   back  1 for the half around -z, 0 for the half around +z; in [0, 1]
@@ -146,7 +172,10 @@ typedef struct vair_DualParaboloid {
     float2 uv;
     float back;
 } vair_DualParaboloid;
+#endif
 
+#ifndef VAIR_BESSEL_I0E_F02794E9
+#define VAIR_BESSEL_I0E_F02794E9
 // Scaled modified Bessel function e^-|x| I0(x), the normaliser of a wrapped Gaussian lobe.
 //   x           any sign; held at |x| = 131072 beyond; in [-100000, 100000]
 //   returns     e^-|x| I0(x), in (0, 1]
@@ -167,7 +196,10 @@ static inline float vair_bessel_i0e(float x) {
     float denominator = 1.0f + m * (2.318332f + m * (2.4194713f + m * tail));
     return sqrt(numerator / denominator);
 }
+#endif
 
+#ifndef VAIR_BESSEL_I0E_SHORT_C03BE278
+#define VAIR_BESSEL_I0E_SHORT_C03BE278
 // Scaled modified Bessel function e^-|x| I0(x) to 2.2e-4, at half the cost. Variant of
 // vair_bessel_i0e.
 //   x           any sign; held at |x| = 131072 beyond; in [-100000, 100000]
@@ -184,7 +216,10 @@ static inline float vair_bessel_i0e_short(float x) {
         * (2.6940675f + m * (1.0433983f + m * 1.1907202f)));
     return sqrt(numerator / denominator);
 }
+#endif
 
+#ifndef VAIR_BESSEL_I0E_COARSE_38E200A8
+#define VAIR_BESSEL_I0E_COARSE_38E200A8
 // Scaled modified Bessel function e^-|x| I0(x) to 2.2e-3. Variant of vair_bessel_i0e.
 //   x           any sign; held at |x| = 131072 beyond; in [-100000, 100000]
 //   returns     e^-|x| I0(x), in (0, 1]
@@ -199,7 +234,10 @@ static inline float vair_bessel_i0e_coarse(float x) {
     float denominator = 1.0f + m * (2.449919f + m * (2.0552883f + m * 3.114644f));
     return sqrt(numerator / denominator);
 }
+#endif
 
+#ifndef VAIR_EXPREL_SERIES_C8E0B211
+#define VAIR_EXPREL_SERIES_C8E0B211
 // Polynomial for (1 - e^-x) / x.
 //   x        in [0, 0.7]
 //   returns  (1 - e^-x) / x, in [0.719, 1]; 1 at x = 0
@@ -210,7 +248,10 @@ static inline float vair_exprel_series(float x) {
     return 1.0f + x * (-0.4999993f + x
         * (0.166653f + x * (-0.041577216f + x * (0.008073649f + x * (-0.0010359237f)))));
 }
+#endif
 
+#ifndef VAIR_EXPREL_NEG_A9C661AD
+#define VAIR_EXPREL_NEG_A9C661AD
 // Mean of e^-u over 0 <= u <= x, which is (1 - e^-x) / x.
 //   x           optical depth, at least 0; in [0, 1e30]
 //   returns     (1 - e^-x) / x, in (0, 1], with flat relative error
@@ -225,7 +266,10 @@ static inline float vair_exprel_neg(float x) {
     float quotient = (1.0f - exp(-min(x, 80.0f))) / max(x, 0.7f);
     return x < 0.7f ? series : quotient;
 }
+#endif
 
+#ifndef VAIR_GROWTH_RATIONAL_16215FE2
+#define VAIR_GROWTH_RATIONAL_16215FE2
 // Function h for which x h(x) imitates e^x - 1.
 //   x        at least 0; in [0, 1e30]
 //   returns  h(x), with 1 / (1 + x h) = e^-x to 3.9e-4, x h / (1 + x h) = 1 - e^-x and h / (1 + x
@@ -240,7 +284,10 @@ static inline float vair_growth_rational(float x) {
     float first = 2.0f + u;
     return cubic * first * (2.0f + u * first);
 }
+#endif
 
+#ifndef VAIR_EXPREL_NEG_RATIONAL_8F7AE518
+#define VAIR_EXPREL_NEG_RATIONAL_8F7AE518
 // Mean of e^-u over 0 <= u <= x as a ratio of polynomials: 0.04 percent, and cheap. Variant of
 // vair_exprel_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -254,7 +301,10 @@ static inline float vair_exprel_neg_rational(float x) {
     float h = vair_growth_rational(x);
     return h / (1.0f + x * h);
 }
+#endif
 
+#ifndef VAIR_GROWTH_COARSE_EAA673AE
+#define VAIR_GROWTH_COARSE_EAA673AE
 // Polynomial h for which x h(x) imitates e^x - 1, to one percent.
 //   x        at least 0; in [0, 1e30]
 //   returns  h(x), with 1 / (1 + x h) = e^-x to 7e-3, x h / (1 + x h) = 1 - e^-x and h / (1 + x h)
@@ -265,7 +315,10 @@ static inline float vair_growth_coarse(float x) {
     float y = min(x, 88.0f);
     return 1.0f + y * (0.3910993f + y * 0.37012953f);
 }
+#endif
 
+#ifndef VAIR_EXPREL_NEG_RATIONAL_COARSE_550D1749
+#define VAIR_EXPREL_NEG_RATIONAL_COARSE_550D1749
 // Mean of e^-u over 0 <= u <= x as a ratio of polynomials of low degree: one percent. Variant of
 // vair_exprel_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -279,7 +332,10 @@ static inline float vair_exprel_neg_rational_coarse(float x) {
     float h = vair_growth_coarse(x);
     return h / (1.0f + x * h);
 }
+#endif
 
+#ifndef VAIR_ATANH_SERIES_94120DE3
+#define VAIR_ATANH_SERIES_94120DE3
 // Inverse hyperbolic tangent of z, divided by z.
 //   z_squared  z * z, for |z| <= 1/3; in [0, 0.111111112]
 //   returns    atanh(z) / z, in [1, 1.0398]
@@ -290,7 +346,10 @@ static inline float vair_atanh_series(float z_squared) {
     return 1.0f + z_squared * (0.3333321f + z_squared
         * (0.20010719f + z_squared * (0.14001513f + z_squared * 0.1400339f)));
 }
+#endif
 
+#ifndef VAIR_LOG_ONE_MINUS_5FB265DB
+#define VAIR_LOG_ONE_MINUS_5FB265DB
 // Natural logarithm of 1 - q, accurate as q -> 0.
 //   q           in [0, 1); the largest float32 below 1 gives -16.64
 //   returns     log(1 - q), at most 0, with flat relative error
@@ -307,7 +366,10 @@ static inline float vair_log_one_minus(float q) {
     float log_far = log(max(1.0f - q, 1.2e-38f));
     return q < 0.5f ? log_near : log_far;
 }
+#endif
 
+#ifndef VAIR_LOG_ONE_MINUS_DIRECT_9B9494CB
+#define VAIR_LOG_ONE_MINUS_DIRECT_9B9494CB
 // Natural logarithm of 1 - q as written: a small absolute error, no relative accuracy as q -> 0.
 // Variant of vair_log_one_minus.
 //   q           in [0, 1)
@@ -321,7 +383,10 @@ static inline float vair_log_one_minus(float q) {
 static inline float vair_log_one_minus_direct(float q) {
     return log(max(1.0f - q, 1.2e-38f));
 }
+#endif
 
+#ifndef VAIR_LOG_ONE_MINUS_THIN_9E66E42F
+#define VAIR_LOG_ONE_MINUS_THIN_9E66E42F
 // Natural logarithm of 1 - q for q up to 1/2 by two terms: no logarithm, 0.05 percent. Variant of
 // vair_log_one_minus.
 //   q           in [0, 0.5]
@@ -335,7 +400,10 @@ static inline float vair_log_one_minus_thin(float q) {
     float z = q / (2.0f - q);
     return -2.0f * z * (1.0f + 0.35312897f * (z * z));
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_3A7D3C07
+#define VAIR_ONE_MINUS_EXP_NEG_3A7D3C07
 // Opacity 1 - e^-x of the optical depth x, with flat relative error down to x = 1e-30.
 //   x           optical depth, at least 0; in [0, 1e30]
 //   returns     1 - e^-x, in [0, 1]
@@ -351,7 +419,10 @@ static inline float vair_one_minus_exp_neg(float x) {
     float difference = 1.0f - exp(-min(x, 80.0f));
     return x < 0.7f ? series : difference;
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_DIRECT_7DA338CF
+#define VAIR_ONE_MINUS_EXP_NEG_DIRECT_7DA338CF
 // Opacity 1 - e^-x as written: a small absolute error, no relative accuracy for thin coats. Variant
 // of vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -363,7 +434,10 @@ static inline float vair_one_minus_exp_neg(float x) {
 static inline float vair_one_minus_exp_neg_direct(float x) {
     return 1.0f - exp(-min(x, 80.0f));
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_DOUBLING_8A5B83F9
+#define VAIR_ONE_MINUS_EXP_NEG_DOUBLING_8A5B83F9
 // Opacity 1 - e^-x without a transcendental function or a branch, with flat relative error. Variant
 // of vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -383,7 +457,10 @@ static inline float vair_one_minus_exp_neg_doubling(float x) {
     float e8 = e4 * (2.0f - e4);
     return e8 * (2.0f - e8);
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_RATIONAL_6D1C04AC
+#define VAIR_ONE_MINUS_EXP_NEG_RATIONAL_6D1C04AC
 // Opacity 1 - e^-x as a ratio of polynomials: a fifth of half an 8-bit step, and cheap. Variant of
 // vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -398,7 +475,10 @@ static inline float vair_one_minus_exp_neg_rational(float x) {
     float w = x * vair_growth_rational(x);
     return w / (1.0f + w);
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_DOUBLING_SHORT_4743C8DB
+#define VAIR_ONE_MINUS_EXP_NEG_DOUBLING_SHORT_4743C8DB
 // Opacity 1 - e^-x by four doublings of a quadratic: no exponential, no division, no branch.
 // Variant of vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -416,7 +496,10 @@ static inline float vair_one_minus_exp_neg_doubling_short(float x) {
     float e8 = e4 * (2.0f - e4);
     return e8 * (2.0f - e8);
 }
+#endif
 
+#ifndef VAIR_ONE_MINUS_EXP_NEG_RATIONAL_COARSE_4EA93735
+#define VAIR_ONE_MINUS_EXP_NEG_RATIONAL_COARSE_4EA93735
 // Opacity 1 - e^-x as a ratio of polynomials of low degree: one percent. Variant of
 // vair_one_minus_exp_neg.
 //   x           optical depth, at least 0; in [0, 1e30]
@@ -430,7 +513,10 @@ static inline float vair_one_minus_exp_neg_rational_coarse(float x) {
     float w = x * vair_growth_coarse(x);
     return w / (1.0f + w);
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_6CA53350
+#define VAIR_POW_ONE_MINUS_6CA53350
 // Power (1 - q)^p, accurate as q -> 0 and for exponents up to 1e5.
 //   q           defect 1 - x of the base x, in [0, 2]; computed directly, not as 1 - x
 //   p           exponent, in [0, 1e5]
@@ -447,7 +533,10 @@ static inline float vair_pow_one_minus(float q, float p) {
     float power = exp(max(p * vair_log_one_minus(inside), -80.0f));
     return (q < 1.0f || p <= 0.0f) ? power : 0.0f;
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_FROM4_C9E2B17A
+#define VAIR_POW_ONE_MINUS_FROM4_C9E2B17A
 // Power (1 - q)^p for exponents from 4 on, without a logarithm. Variant of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
 //   p           exponent, in [4, 1e5]
@@ -467,7 +556,10 @@ static inline float vair_pow_one_minus_from4(float q, float p) {
     float series = 1.0f + z_squared * (0.32551703f + z_squared * 0.29121366f);
     return exp(max(-2.0f * p * z * series, -80.0f));
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_GAUSS_ED2435F7
+#define VAIR_POW_ONE_MINUS_GAUSS_ED2435F7
 // Power (1 - q)^p by its first term: a third of a percent off at p = 8 and exact for large p.
 // Variant of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -484,7 +576,10 @@ static inline float vair_pow_one_minus_gauss(float q, float p) {
     float inside = min(q, 1.9f);
     return exp(max(-2.0f * p * (inside / (2.0f - inside)), -80.0f));
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_SQ16_BA9B0549
+#define VAIR_POW_ONE_MINUS_SQ16_BA9B0549
 // Power (1 - q)^p by four squarings and one division, without a transcendental function. Variant of
 // vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -506,7 +601,10 @@ static inline float vair_pow_one_minus_sq16(float q, float p) {
     float r8 = r4 * r4;
     return r8 * r8;
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_FROM8_6F483F1B
+#define VAIR_POW_ONE_MINUS_FROM8_6F483F1B
 // Power (1 - q)^p for exponents from 8 on, by one exponential and without a division. Variant of
 // vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -521,7 +619,10 @@ static inline float vair_pow_one_minus_from8(float q, float p) {
     float inside = clamp(q, 0.0f, 2.0f);
     return exp(-min(p * inside * (1.0f + inside * (0.47710302f + inside * 0.5246705f)), 80.0f));
 }
+#endif
 
+#ifndef VAIR_POW_ONE_MINUS_CUBIC8_4CDA7086
+#define VAIR_POW_ONE_MINUS_CUBIC8_4CDA7086
 // Power (1 - q)^p by three squarings of a cubic: no transcendental function, no division. Variant
 // of vair_pow_one_minus.
 //   q           defect 1 - x of the base x, in [0, 2]
@@ -540,7 +641,10 @@ static inline float vair_pow_one_minus_cubic8(float q, float p) {
     float r4 = r2 * r2;
     return r4 * r4;
 }
+#endif
 
+#ifndef VAIR_SAFE_NORMALIZE_084834DF
+#define VAIR_SAFE_NORMALIZE_084834DF
 // Unit vector along x for any length from 1e-30 to 1e30, and a chosen direction for the zero
 // vector.
 //   x           vector to normalise; length in [1e-30, 1e30]
@@ -560,7 +664,10 @@ static inline float3 vair_safe_normalize(float3 x, float3 fallback) {
     float3 unit = rsqrt(max(squared, 1e-37f)) * scaled;
     return squared > 1e-37f ? unit : fallback;
 }
+#endif
 
+#ifndef VAIR_SAFE_NORMALIZE_DOT_6E625A12
+#define VAIR_SAFE_NORMALIZE_DOT_6E625A12
 // Unit vector along x for ordinary lengths, and a chosen direction for the zero vector. Variant of
 // vair_safe_normalize.
 //   x           vector to normalise, of length 1e-15 to 1e18, or zero
@@ -577,7 +684,10 @@ static inline float3 vair_safe_normalize_dot(float3 x, float3 fallback) {
     float3 unit = rsqrt(max(squared, 1e-37f)) * x;
     return squared > 1e-37f ? unit : fallback;
 }
+#endif
 
+#ifndef VAIR_SAFE_NORMALIZE_NONZERO_B893864A
+#define VAIR_SAFE_NORMALIZE_NONZERO_B893864A
 // Unit vector along x for ordinary lengths, where x is known not to be zero. Variant of
 // vair_safe_normalize.
 //   x           vector to normalise, of length 1e-15 to 1e18
@@ -591,7 +701,10 @@ static inline float3 vair_safe_normalize_dot(float3 x, float3 fallback) {
 static inline float3 vair_safe_normalize_nonzero(float3 x, float3 fallback) {
     return rsqrt(max(dot(x, x), 1e-37f)) * x;
 }
+#endif
 
+#ifndef VAIR_SAFE_POW_EEA5849F
+#define VAIR_SAFE_POW_EEA5849F
 // Power x^y that is 0 for negative bases and 1 for exponent 0.
 //   x           base; in [-1, 16]
 //   y           exponent; in [-28, 100000]
@@ -618,7 +731,10 @@ static inline float vair_safe_pow(float x, float y) {
     float bounded = x > 0.0f ? positive : 0.0f;
     return y == 0.0f ? 1.0f : bounded;
 }
+#endif
 
+#ifndef VAIR_SAFE_POW_EXP2_FC5BE1E5
+#define VAIR_SAFE_POW_EXP2_FC5BE1E5
 // Power x^y by the built-in logarithm: cheaper, with an error that grows with the exponent. Variant
 // of vair_safe_pow.
 //   x           base; in [-1, 16]
@@ -640,7 +756,10 @@ static inline float vair_safe_pow_exp2(float x, float y) {
     float bounded = x > 0.0f ? positive : 0.0f;
     return y == 0.0f ? 1.0f : bounded;
 }
+#endif
 
+#ifndef VAIR_SAFE_POW_NEAR_ONE_5E8D482D
+#define VAIR_SAFE_POW_NEAR_ONE_5E8D482D
 // Power x^y for bases from 1/2 to 2: as accurate as vair_safe_pow, without a logarithm. Variant of
 // vair_safe_pow.
 //   x           base, in [0.5, 2]
@@ -657,7 +776,10 @@ static inline float vair_safe_pow_near_one(float x, float y) {
     float z = (x - 1.0f) / (x + 1.0f);
     return exp(clamp(2.0f * y * z * vair_atanh_series(z * z), -80.0f, 80.0f));
 }
+#endif
 
+#ifndef VAIR_SAFE_SMOOTHSTEP_3B6EC755
+#define VAIR_SAFE_SMOOTHSTEP_3B6EC755
 // Smooth step from 0 at edge0 to 1 at edge1, in either order.
 //   edge0       where the result is 0; in [-10000, 10000]
 //   edge1       where the result is 1; may lie below edge0, then the step descends; in [-10000,
@@ -680,7 +802,10 @@ static inline float vair_safe_smoothstep(float edge0, float edge1, float x) {
     float hard = x < edge0 ? 0.0f : 1.0f;
     return fabs(width) >= 1.2e-38f ? s * s * (3.0f - 2.0f * s) : hard;
 }
+#endif
 
+#ifndef VAIR_SAFE_SMOOTHSTEP_RISING_DA6E4FBE
+#define VAIR_SAFE_SMOOTHSTEP_RISING_DA6E4FBE
 // Smooth step from 0 at edge0 to 1 at edge1, for edge0 < edge1. Variant of vair_safe_smoothstep.
 //   edge0       where the result is 0; in [-10000, 10000]
 //   edge1       where the result is 1; above edge0; in [-10000, 10000]
@@ -695,7 +820,10 @@ static inline float vair_safe_smoothstep_rising(float edge0, float edge1, float 
     float s = clamp((x - edge0) / max(edge1 - edge0, 1e-30f), 0.0f, 1.0f);
     return s * s * (3.0f - 2.0f * s);
 }
+#endif
 
+#ifndef VAIR_SAFE_SMOOTHSTEP_RAMP_B14AA34A
+#define VAIR_SAFE_SMOOTHSTEP_RAMP_B14AA34A
 // Straight step in place of the smooth one, for edge0 < edge1: 0.031 off, with corners. Variant of
 // vair_safe_smoothstep.
 //   edge0       lower edge; in [-10000, 10000]
@@ -712,7 +840,10 @@ static inline float vair_safe_smoothstep_ramp(float edge0, float edge1, float x)
     float s = (x - edge0) / max(edge1 - edge0, 1e-30f);
     return clamp(-0.13309973f + 1.2661995f * s, 0.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_SAFE_SQRT_BF3D484F
+#define VAIR_SAFE_SQRT_BF3D484F
 // Square root of x, and 0 for negative x.
 //   x           number; what rounding pushed below zero counts as zero; in [-1, 1e30]
 //   returns     sqrt(max(x, 0)), at least 0
@@ -725,7 +856,10 @@ static inline float vair_safe_smoothstep_ramp(float edge0, float edge1, float x)
 static inline float vair_safe_sqrt(float x) {
     return sqrt(max(x, 0.0f));
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_NORMAL_43861335
+#define VAIR_FRAME_FROM_NORMAL_43861335
 // Right-handed frame around n, by a fixed rule that is continuous on each of the halves z >= 0 and
 // z < 0.
 //   n           normal; unit vector
@@ -744,7 +878,10 @@ static inline vair_Frame vair_frame_from_normal(float3 n) {
     float3 bitangent = (float3)(b, s + n.y * n.y * a, -n.y);
     return (vair_Frame){tangent, bitangent, n};
 }
+#endif
 
+#ifndef VAIR_DOUBLED_CROSS_B2530C19
+#define VAIR_DOUBLED_CROSS_B2530C19
 // Twice the outer product of two directions, with flat relative error at every angle.
 //   a        first direction; unit vector
 //   b        second direction; unit vector
@@ -760,7 +897,10 @@ static inline float3 vair_doubled_cross(float3 a, float3 b) {
     float3 s = a + b;
     return (float3)(d.y * s.z - d.z * s.y, d.z * s.x - d.x * s.z, d.x * s.y - d.y * s.x);
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_TANGENT_63CC3224
+#define VAIR_FRAME_FROM_TANGENT_63CC3224
 // Right-handed frame with the normal n and, as far as that allows, the tangent t.
 //   n           normal, kept as it is; unit vector
 //   t           wanted tangent; only its part across n counts; unit vector
@@ -777,7 +917,10 @@ static inline vair_Frame vair_frame_from_tangent(float3 n, float3 t) {
         vair_frame_from_normal(n).bitangent);
     return (vair_Frame){cross(bitangent, n), bitangent, n};
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_TANGENT_APART_FD53879A
+#define VAIR_FRAME_FROM_TANGENT_APART_FD53879A
 // Right-handed frame with the normal n and the tangent t, for tangents that are well off the
 // normal. Variant of vair_frame_from_tangent.
 //   n           normal, kept as it is; unit vector
@@ -796,7 +939,10 @@ static inline vair_Frame vair_frame_from_tangent_apart(float3 n, float3 t) {
     float3 bitangent = rsqrt(max(dot(across, across), 1e-37f)) * across;
     return (vair_Frame){cross(bitangent, n), bitangent, n};
 }
+#endif
 
+#ifndef VAIR_FRAME_FROM_TANGENT_ORTHOGONAL_83A1223F
+#define VAIR_FRAME_FROM_TANGENT_ORTHOGONAL_83A1223F
 // Right-handed frame of a normal and a tangent that are orthogonal already. Variant of
 // vair_frame_from_tangent.
 //   n           normal, kept as it is; unit vector
@@ -811,7 +957,10 @@ static inline vair_Frame vair_frame_from_tangent_apart(float3 n, float3 t) {
 static inline vair_Frame vair_frame_from_tangent_orthogonal(float3 n, float3 t) {
     return (vair_Frame){t, cross(n, t), n};
 }
+#endif
 
+#ifndef VAIR_HALF_VECTOR_C2044C16
+#define VAIR_HALF_VECTOR_C2044C16
 // Unit vector halfway between l and v.
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
@@ -831,7 +980,10 @@ static inline float3 vair_half_vector(float3 l, float3 v) {
     float3 middle = rsqrt(max(squared, 1e-12f)) * total;
     return squared < 1e-12f ? vair_frame_from_normal(l).tangent : middle;
 }
+#endif
 
+#ifndef VAIR_HALF_VECTOR_APART_8246735E
+#define VAIR_HALF_VECTOR_APART_8246735E
 // Unit vector halfway between l and v, where they are not opposite. Variant of vair_half_vector.
 //   l           direction to the light; unit vector
 //   v           direction to the viewer; unit vector
@@ -846,7 +998,10 @@ static inline float3 vair_half_vector_apart(float3 l, float3 v) {
     float3 total = l + v;
     return rsqrt(max(dot(total, total), 1e-12f)) * total;
 }
+#endif
 
+#ifndef VAIR_HALF_VECTOR_ACUTE_63D139FF
+#define VAIR_HALF_VECTOR_ACUTE_63D139FF
 // Unit vector halfway between l and v that are at most a right angle apart, to 5e-4, without a
 // root. Variant of vair_half_vector.
 //   l           direction to the light; unit vector
@@ -861,7 +1016,10 @@ static inline float3 vair_half_vector_acute(float3 l, float3 v) {
     float c = clamp(dot(l, v), 0.0f, 1.0f);
     return (0.7067681f + c * (-0.34165564f + c * (0.19444013f + c * (-0.059792068f)))) * (l + v);
 }
+#endif
 
+#ifndef VAIR_LINE_COMPONENT_E1513FA0
+#define VAIR_LINE_COMPONENT_E1513FA0
 // Part of x along the line of t.
 //   x           vector; rounding is proportional to its length; length in [0.001, 1]
 //   t           unit vector along the line, either way
@@ -873,7 +1031,10 @@ static inline float3 vair_half_vector_acute(float3 l, float3 v) {
 static inline float3 vair_line_component(float3 x, float3 t) {
     return dot(x, t) * t;
 }
+#endif
 
+#ifndef VAIR_LINE_REJECTION_F3111C97
+#define VAIR_LINE_REJECTION_F3111C97
 // Part of x across the line of t.
 //   x           vector; rounding is proportional to its length; length in [0.001, 1]
 //   t           unit vector along the line, either way
@@ -887,7 +1048,10 @@ static inline float3 vair_line_component(float3 x, float3 t) {
 static inline float3 vair_line_rejection(float3 x, float3 t) {
     return x - dot(x, t) * t;
 }
+#endif
 
+#ifndef VAIR_MIRROR_55DA1D99
+#define VAIR_MIRROR_55DA1D99
 // Reflection of l about n; both point away from the surface, and so does the result.
 //   l           direction to the light; unit vector
 //   n           normal; unit vector
@@ -900,7 +1064,10 @@ static inline float3 vair_line_rejection(float3 x, float3 t) {
 static inline float3 vair_mirror(float3 l, float3 n) {
     return 2.0f * dot(n, l) * n - l;
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_2ABD2F95
+#define VAIR_SIN_ANGLE_2ABD2F95
 // Sine of the angle between two directions, with flat relative error at every angle.
 //   a           first direction; unit vector
 //   b           second direction; unit vector
@@ -917,7 +1084,10 @@ static inline float vair_sin_angle(float3 a, float3 b) {
     float3 doubled = vair_doubled_cross(a, b);
     return 0.5f * sqrt(dot(doubled, doubled));
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_HALF_04016D67
+#define VAIR_SIN_ANGLE_HALF_04016D67
 // Sine of the angle between two directions by half angles: one root, good to 1e-4 rad. Variant of
 // vair_sin_angle.
 //   a           first direction; unit vector
@@ -937,7 +1107,10 @@ static inline float vair_sin_angle_half(float3 a, float3 b) {
     float3 total = a + b;
     return 0.5f * sqrt(dot(difference, difference) * dot(total, total));
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_CROSS_B7933B16
+#define VAIR_SIN_ANGLE_CROSS_B7933B16
 // Sine of the angle between two directions by their cross product. Variant of vair_sin_angle.
 //   a           first direction; unit vector
 //   b           second direction; unit vector
@@ -953,7 +1126,10 @@ static inline float vair_sin_angle_cross(float3 a, float3 b) {
     float3 product = cross(a, b);
     return sqrt(dot(product, product));
 }
+#endif
 
+#ifndef VAIR_SIN_ANGLE_COSINE_05473886
+#define VAIR_SIN_ANGLE_COSINE_05473886
 // Sine of the angle between two directions by their cosine: the obvious form. Variant of
 // vair_sin_angle.
 //   a           first direction; unit vector
@@ -970,7 +1146,10 @@ static inline float vair_sin_angle_cosine(float3 a, float3 b) {
     float c = dot(a, b);
     return sqrt(max(1.0f - c * c, 0.0f));
 }
+#endif
 
+#ifndef VAIR_TO_LOCAL_9C55172E
+#define VAIR_TO_LOCAL_9C55172E
 // Coordinates of a world-space vector in a frame.
 //   frame       orthonormal frame in world space
 //   w           vector in world space; unit vector
@@ -982,7 +1161,10 @@ static inline float vair_sin_angle_cosine(float3 a, float3 b) {
 static inline float3 vair_to_local(vair_Frame frame, float3 w) {
     return (float3)(dot(frame.tangent, w), dot(frame.bitangent, w), dot(frame.normal, w));
 }
+#endif
 
+#ifndef VAIR_TO_WORLD_79673411
+#define VAIR_TO_WORLD_79673411
 // World-space vector of coordinates in a frame; undoes vair_to_local.
 //   frame       orthonormal frame in world space
 //   w           vector in the frame: x along its tangent, y bitangent, z normal; unit vector
@@ -994,7 +1176,10 @@ static inline float3 vair_to_local(vair_Frame frame, float3 w) {
 static inline float3 vair_to_world(vair_Frame frame, float3 w) {
     return w.x * frame.tangent + w.y * frame.bitangent + w.z * frame.normal;
 }
+#endif
 
+#ifndef VAIR_INHERITED_SHADOW_B08A9421
+#define VAIR_INHERITED_SHADOW_B08A9421
 // Lambert's cosine of the carrying surface, which the strands inherit as self-shadowing.
 //   n           surface normal; unit vector
 //   l           direction to the light; unit vector
@@ -1007,7 +1192,10 @@ static inline float3 vair_to_world(vair_Frame frame, float3 w) {
 static inline float vair_inherited_shadow(float3 n, float3 l) {
     return max(dot(n, l), 0.0f);
 }
+#endif
 
+#ifndef VAIR_STRAND_ANGLES_45A91AC3
+#define VAIR_STRAND_ANGLES_45A91AC3
 // Angles of a light and a viewer to a strand, computed once for diffuse and specular terms.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1033,7 +1221,10 @@ static inline vair_StrandAngles vair_strand_angles(float3 t, float3 l, float3 v)
     return (vair_StrandAngles){cos_l, cos_v, sin_l, sin_v, 0.5f
         * (across * across + along * along)};
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_2B3FF0A9
+#define VAIR_KAJIYA_KAY_SHADE_2B3FF0A9
 // Light reflected by a free strand, after Kajiya and Kay.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1055,7 +1246,10 @@ static inline float3 vair_kajiya_kay_shade(float3 t, float3 l, float3 v, float3 
     vair_StrandAngles angles = vair_strand_angles(t, l, v);
     return angles.sin_l * k_diffuse + vair_pow_one_minus(angles.defect, exponent) * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_72300CE8
+#define VAIR_BANKS_SHADE_72300CE8
 // Light reflected by a surface that is made of strands, after Banks.
 //   t           strand tangent, root to tip; unit vector
 //   n           surface normal; unit vector
@@ -1078,7 +1272,10 @@ static inline float3 vair_banks_shade(float3 t, float3 n, float3 l, float3 v, fl
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_ANGLES_HALF_B1A164C2
+#define VAIR_STRAND_ANGLES_HALF_B1A164C2
 // Angles of a light and a viewer to a strand by half angles: everything from four squared lengths.
 // Variant of vair_strand_angles.
 //   t           strand tangent, root to tip; unit vector
@@ -1113,7 +1310,10 @@ static inline vair_StrandAngles vair_strand_angles_half(float3 t, float3 l, floa
     return (vair_StrandAngles){cos_l, cos_v, sin_l, sin_v, 0.5f
         * (across * across + along * along)};
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_FROM4_3BEE9E68
+#define VAIR_KAJIYA_KAY_SHADE_FROM4_3BEE9E68
 // Light reflected by a free strand, for exponents from 4 on, without a logarithm. Variant of
 // vair_kajiya_kay_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1134,7 +1334,10 @@ static inline float3 vair_kajiya_kay_shade_from4(float3 t, float3 l, float3 v, f
     return angles.sin_l * k_diffuse + vair_pow_one_minus_from4(angles.defect, exponent)
         * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_FROM4_A67032EA
+#define VAIR_BANKS_SHADE_FROM4_A67032EA
 // Light reflected by a surface that is made of strands, for exponents from 4 on, without a
 // logarithm. Variant of vair_banks_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1156,7 +1359,10 @@ static inline float3 vair_banks_shade_from4(float3 t, float3 n, float3 l, float3
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade_from4(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_FROM8_97AEC33E
+#define VAIR_KAJIYA_KAY_SHADE_FROM8_97AEC33E
 // Light reflected by a free strand, for exponents from 8 on, by one exponential. Variant of
 // vair_kajiya_kay_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1177,7 +1383,10 @@ static inline float3 vair_kajiya_kay_shade_from8(float3 t, float3 l, float3 v, f
     return angles.sin_l * k_diffuse + vair_pow_one_minus_from8(angles.defect, exponent)
         * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_FROM8_15BE83B7
+#define VAIR_BANKS_SHADE_FROM8_15BE83B7
 // Light reflected by a surface that is made of strands, for exponents from 8 on, by one
 // exponential. Variant of vair_banks_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1199,7 +1408,10 @@ static inline float3 vair_banks_shade_from8(float3 t, float3 n, float3 l, float3
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade_from8(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_KAJIYA_KAY_SHADE_CUBIC8_55F1EC5A
+#define VAIR_KAJIYA_KAY_SHADE_CUBIC8_55F1EC5A
 // Light reflected by a free strand, for exponents from 8 on, by polynomials. Variant of
 // vair_kajiya_kay_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1220,7 +1432,10 @@ static inline float3 vair_kajiya_kay_shade_cubic8(float3 t, float3 l, float3 v, 
     return angles.sin_l * k_diffuse + vair_pow_one_minus_cubic8(angles.defect, exponent)
         * k_specular;
 }
+#endif
 
+#ifndef VAIR_BANKS_SHADE_CUBIC8_2FDA4612
+#define VAIR_BANKS_SHADE_CUBIC8_2FDA4612
 // Light reflected by a surface that is made of strands, for exponents from 8 on, by polynomials.
 // Variant of vair_banks_shade.
 //   t           strand tangent, root to tip; unit vector
@@ -1242,7 +1457,10 @@ static inline float3 vair_banks_shade_cubic8(float3 t, float3 n, float3 l, float
     return vair_inherited_shadow(n, l)
         * vair_kajiya_kay_shade_cubic8(t, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_TANGENT_FROM_MAP_C4D4975D
+#define VAIR_TANGENT_FROM_MAP_C4D4975D
 // Per-pixel strand tangent of a brushed surface.
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
@@ -1264,7 +1482,10 @@ static inline float3 vair_tangent_from_map(float3 n, float3 t, float3 map_tangen
     float2 unit = squared > 1e-37f ? rsqrt(max(squared, 1e-37f)) * texel : (float2)(1.0f, 0.0f);
     return unit.x * frame.tangent + unit.y * frame.bitangent;
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_65882840
+#define VAIR_BRUSHED_SHADE_65882840
 // Light reflected by a brushed surface: strand lighting with a tangent from a texture, per pixel.
 //   n            surface normal; unit vector
 //   t            tangent of the surface, along the first texture coordinate; unit vector
@@ -1291,7 +1512,10 @@ static inline float3 vair_brushed_shade(float3 n, float3 t, float3 map_tangent, 
     float3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_FROM4_057C24DE
+#define VAIR_BRUSHED_SHADE_FROM4_057C24DE
 // Light reflected by a brushed surface, for exponents from 4 on, without a logarithm. Variant of
 // vair_brushed_shade.
 //   n            surface normal; unit vector
@@ -1314,7 +1538,10 @@ static inline float3 vair_brushed_shade_from4(float3 n, float3 t, float3 map_tan
     float3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade_from4(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_FROM8_DD8DB7F3
+#define VAIR_BRUSHED_SHADE_FROM8_DD8DB7F3
 // Light reflected by a brushed surface, for exponents from 8 on, by one exponential. Variant of
 // vair_brushed_shade.
 //   n            surface normal; unit vector
@@ -1337,7 +1564,10 @@ static inline float3 vair_brushed_shade_from8(float3 n, float3 t, float3 map_tan
     float3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade_from8(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_BRUSHED_SHADE_CUBIC8_40062C96
+#define VAIR_BRUSHED_SHADE_CUBIC8_40062C96
 // Light reflected by a brushed surface, for exponents from 8 on, by polynomials. Variant of
 // vair_brushed_shade.
 //   n            surface normal; unit vector
@@ -1360,7 +1590,10 @@ static inline float3 vair_brushed_shade_cubic8(float3 n, float3 t, float3 map_ta
     float3 combed = vair_tangent_from_map(n, t, map_tangent);
     return vair_banks_shade_cubic8(combed, n, l, v, k_diffuse, k_specular, exponent);
 }
+#endif
 
+#ifndef VAIR_COAT_EXTINCTION_D62EB79C
+#define VAIR_COAT_EXTINCTION_D62EB79C
 // Extinction coefficient of a coat that absorbs the fraction rho per unit length.
 //   rho         fraction of light lost along a path of length 1, in [0, 1]; Banks uses 0.02
 //   returns     -log(1 - rho) per unit length, at least 0
@@ -1375,7 +1608,10 @@ static inline float vair_coat_extinction(float rho) {
     float inside = -vair_log_one_minus(min(rho, 0.99999994f));
     return rho < 1.0f ? inside : 1e18f;
 }
+#endif
 
+#ifndef VAIR_COAT_EXTINCTION_DIRECT_63B5DF1B
+#define VAIR_COAT_EXTINCTION_DIRECT_63B5DF1B
 // Extinction coefficient of a coat, as written: a small absolute error. Variant of
 // vair_coat_extinction.
 //   rho         fraction of light lost along a path of length 1, in [0, 1]
@@ -1391,7 +1627,10 @@ static inline float vair_coat_extinction_direct(float rho) {
     float inside = -log(max(1.0f - rho, 1.2e-38f));
     return rho < 1.0f ? inside : 1e18f;
 }
+#endif
 
+#ifndef VAIR_COAT_EXTINCTION_THIN_ED997FE7
+#define VAIR_COAT_EXTINCTION_THIN_ED997FE7
 // Extinction coefficient of a coat that loses at most half the light per unit length, to 0.05
 // percent. Variant of vair_coat_extinction.
 //   rho         fraction of light lost along a path of length 1, in [0, 0.5]
@@ -1403,7 +1642,10 @@ static inline float vair_coat_extinction_direct(float rho) {
 static inline float vair_coat_extinction_thin(float rho) {
     return -vair_log_one_minus_thin(rho);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_BANKS_6FB3D2DA
+#define VAIR_COAT_PATH_BANKS_6FB3D2DA
 // Way of light through a coat of strands that lie along the surface, as the lecture writes it.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
 //               1000000]
@@ -1420,7 +1662,10 @@ static inline float vair_coat_extinction_thin(float rho) {
 static inline float vair_coat_path_banks(float depth, float3 t, float3 l) {
     return min(depth / max(vair_sin_angle(t, l), 1e-30f), 1e18f);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_SLAB_60691CB1
+#define VAIR_COAT_PATH_SLAB_60691CB1
 // Way of light through a coat that is a flat layer over the surface.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
 //               1000000]
@@ -1439,7 +1684,10 @@ static inline float vair_coat_path_banks(float depth, float3 t, float3 l) {
 static inline float vair_coat_path_slab(float depth, float3 n, float3 l) {
     return min(depth / max(dot(n, l), 1e-30f), 1e18f);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_BANKS_HALF_8E72701C
+#define VAIR_COAT_PATH_BANKS_HALF_8E72701C
 // Way of light through a coat of strands that lie along the surface, for light off the strand's
 // axis. Variant of vair_coat_path_banks.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
@@ -1456,7 +1704,10 @@ static inline float vair_coat_path_slab(float depth, float3 n, float3 l) {
 static inline float vair_coat_path_banks_half(float depth, float3 t, float3 l) {
     return min(depth / max(vair_sin_angle_half(t, l), 1e-30f), 1e18f);
 }
+#endif
 
+#ifndef VAIR_COAT_PATH_BANKS_CROSS_A74A7527
+#define VAIR_COAT_PATH_BANKS_CROSS_A74A7527
 // Way of light through a coat of strands that lie along the surface, for light off the strand's
 // axis. Variant of vair_coat_path_banks.
 //   depth       distance below the OUTER boundary of the coat, at least 0, in scene units; in [0,
@@ -1473,7 +1724,10 @@ static inline float vair_coat_path_banks_half(float depth, float3 t, float3 l) {
 static inline float vair_coat_path_banks_cross(float depth, float3 t, float3 l) {
     return min(depth / max(vair_sin_angle_cross(t, l), 1e-30f), 1e18f);
 }
+#endif
 
+#ifndef VAIR_COAT_TRANSMITTANCE_3172D31F
+#define VAIR_COAT_TRANSMITTANCE_3172D31F
 // Fraction of light that passes a coat: e^-(extinction path).
 //   extinction  extinction coefficient, per scene unit, in [0, 1e18]; see vair_coat_extinction
 //   path        length of the way, in scene units, in [0, 1e18]; see vair_coat_path_slab
@@ -1487,7 +1741,10 @@ static inline float vair_coat_path_banks_cross(float depth, float3 t, float3 l) 
 static inline float vair_coat_transmittance(float extinction, float path) {
     return exp(-min(extinction * path, 80.0f));
 }
+#endif
 
+#ifndef VAIR_COAT_TRANSMITTANCE_CUBIC16_1E567968
+#define VAIR_COAT_TRANSMITTANCE_CUBIC16_1E567968
 // Fraction of light that passes a coat, as the sixteenth power of a cubic: 7e-6, without
 // exponential. Variant of vair_coat_transmittance.
 //   extinction  extinction coefficient, per scene unit, in [0, 1e18]
@@ -1506,7 +1763,10 @@ static inline float vair_coat_transmittance_cubic16(float extinction, float path
     float r8 = r4 * r4;
     return r8 * r8;
 }
+#endif
 
+#ifndef VAIR_EXP_NEG_QUADRATIC16_C2F9C184
+#define VAIR_EXP_NEG_QUADRATIC16_C2F9C184
 // e^-x as the sixteenth power of a quadratic.
 //   x        at least 0; in [0, 1e30]
 //   returns  e^-x to 2.3e-4 absolute, in (0, 1]
@@ -1520,7 +1780,10 @@ static inline float vair_exp_neg_quadratic16(float x) {
     float r8 = r4 * r4;
     return r8 * r8;
 }
+#endif
 
+#ifndef VAIR_COAT_TRANSMITTANCE_QUADRATIC16_D8F03F8F
+#define VAIR_COAT_TRANSMITTANCE_QUADRATIC16_D8F03F8F
 // Fraction of light that passes a coat, as the sixteenth power of a quadratic: 2.3e-4. Variant of
 // vair_coat_transmittance.
 //   extinction  extinction coefficient, per scene unit, in [0, 1e18]
@@ -1535,7 +1798,10 @@ static inline float vair_exp_neg_quadratic16(float x) {
 static inline float vair_coat_transmittance_quadratic16(float extinction, float path) {
     return vair_exp_neg_quadratic16(extinction * path);
 }
+#endif
 
+#ifndef VAIR_TANGENT_SHIFT_42335CD5
+#define VAIR_TANGENT_SHIFT_42335CD5
 // Strand tangent tilted toward the surface normal.
 //   t           strand tangent, root to tip; unit vector
 //   n           surface normal; unit vector
@@ -1554,7 +1820,10 @@ static inline float vair_coat_transmittance_quadratic16(float extinction, float 
 static inline float3 vair_tangent_shift(float3 t, float3 n, float shift) {
     return vair_safe_normalize_dot(t + shift * n, t);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_5EC867F6
+#define VAIR_STRAND_SPECULAR_HALF_5EC867F6
 // Specular lobe of a strand after Scheuermann: sin(t, h)^exponent.
 //   t           strand tangent, root to tip; unit vector
 //   h           vair_half_vector of light and viewer; unit vector
@@ -1575,7 +1844,10 @@ static inline float vair_strand_specular_half(float3 t, float3 h, float exponent
     float c = dot(t, h);
     return vair_pow_one_minus(c * c, 0.5f * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_HIGHLIGHT_51A7C48F
+#define VAIR_SCHEUERMANN_HIGHLIGHT_51A7C48F
 // One highlight of vair_scheuermann_shade.
 //   t         strand tangent, root to tip; unit vector
 //   n         surface normal; unit vector
@@ -1592,7 +1864,10 @@ static inline float vair_scheuermann_highlight(float3 t, float3 n, float3 h, flo
     float s = clamp(1.0f + dot(shifted, h), 0.0f, 1.0f);
     return s * s * (3.0f - 2.0f * s) * vair_strand_specular_half(shifted, h, exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_971DBF3F
+#define VAIR_SCHEUERMANN_SHADE_971DBF3F
 // Light reflected by hair with a soft diffuse term and two shifted highlights, after Scheuermann.
 //   t                   strand tangent, root to tip; unit vector
 //   n                   surface normal; unit vector
@@ -1630,7 +1905,10 @@ static inline float3 vair_scheuermann_shade(float3 t, float3 n, float3 l, float3
     float s2 = vair_scheuermann_highlight(t, n, h, secondary_exponent, secondary_shift);
     return base * ((float3)(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_FADE_80031001
+#define VAIR_SCHEUERMANN_FADE_80031001
 // Factor by which vair_scheuermann_shade fades a highlight where h points back along the strand.
 //   t        strand tangent, shifted; unit vector
 //   h        vair_half_vector of light and viewer; unit vector
@@ -1641,7 +1919,10 @@ static inline float vair_scheuermann_fade(float3 t, float3 h) {
     float s = clamp(1.0f + dot(t, h), 0.0f, 1.0f);
     return s * s * (3.0f - 2.0f * s);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_FROM4_D15D749E
+#define VAIR_STRAND_SPECULAR_HALF_FROM4_D15D749E
 // Half-vector lobe of a strand for exponents from 8 on, without a logarithm. Variant of
 // vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -1657,7 +1938,10 @@ static inline float vair_strand_specular_half_from4(float3 t, float3 h, float ex
     float c = dot(t, h);
     return vair_pow_one_minus_from4(c * c, 0.5f * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_FROM4_65DBECF8
+#define VAIR_SCHEUERMANN_SHADE_FROM4_65DBECF8
 // Light reflected by hair with two shifted highlights of exponents from 8 on, without logarithms.
 // Variant of vair_scheuermann_shade.
 //   t                   strand tangent, root to tip; unit vector
@@ -1693,7 +1977,10 @@ static inline float3 vair_scheuermann_shade_from4(float3 t, float3 n, float3 l, 
         * vair_strand_specular_half_from4(t2, h, secondary_exponent);
     return base * ((float3)(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_FROM8_AB6C7DE7
+#define VAIR_STRAND_SPECULAR_HALF_FROM8_AB6C7DE7
 // Half-vector lobe of a strand for exponents from 16 on, by one exponential and without a division.
 // Variant of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -1708,7 +1995,10 @@ static inline float vair_strand_specular_half_from8(float3 t, float3 h, float ex
     float c = dot(t, h);
     return vair_pow_one_minus_from8(c * c, 0.5f * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_FROM8_1C913B8C
+#define VAIR_SCHEUERMANN_SHADE_FROM8_1C913B8C
 // Light reflected by hair with two shifted highlights of exponents from 16 on, by two exponentials.
 // Variant of vair_scheuermann_shade.
 //   t                   strand tangent, root to tip; unit vector
@@ -1744,7 +2034,10 @@ static inline float3 vair_scheuermann_shade_from8(float3 t, float3 n, float3 l, 
         * vair_strand_specular_half_from8(t2, h, secondary_exponent);
     return base * ((float3)(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_CUBIC8_3CE9A5BA
+#define VAIR_STRAND_SPECULAR_HALF_CUBIC8_3CE9A5BA
 // Half-vector lobe of a strand for exponents from 16 on, without transcendental function or
 // division. Variant of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -1759,7 +2052,10 @@ static inline float vair_strand_specular_half_cubic8(float3 t, float3 h, float e
     float c = dot(t, h);
     return vair_pow_one_minus_cubic8(c * c, 0.5f * exponent);
 }
+#endif
 
+#ifndef VAIR_SCHEUERMANN_SHADE_CUBIC8_6C06D1A4
+#define VAIR_SCHEUERMANN_SHADE_CUBIC8_6C06D1A4
 // Light reflected by hair with two shifted highlights of exponents from 16 on, by polynomials.
 // Variant of vair_scheuermann_shade.
 //   t                   strand tangent, root to tip; unit vector
@@ -1795,7 +2091,10 @@ static inline float3 vair_scheuermann_shade_cubic8(float3 t, float3 n, float3 l,
         * vair_strand_specular_half_cubic8(t2, h, secondary_exponent);
     return base * ((float3)(d) + s1 * primary + mask * s2 * secondary);
 }
+#endif
 
+#ifndef VAIR_STRAND_ANGLES_COSINE_AA4923E4
+#define VAIR_STRAND_ANGLES_COSINE_AA4923E4
 // Angles of a light and a viewer to a strand from their cosines: for directions away from the
 // strand. Variant of vair_strand_angles.
 //   t           strand tangent, root to tip; unit vector
@@ -1820,7 +2119,10 @@ static inline vair_StrandAngles vair_strand_angles_cosine(float3 t, float3 l, fl
     return (vair_StrandAngles){cos_l, cos_v, sin_l, sin_v, 0.5f
         * (across * across + along * along)};
 }
+#endif
 
+#ifndef VAIR_STRAND_AZIMUTH_COSINE_46F315A6
+#define VAIR_STRAND_AZIMUTH_COSINE_46F315A6
 // Cosine kappa of the angle between light and viewer around a strand.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1843,7 +2145,10 @@ static inline float vair_strand_azimuth_cosine(float3 t, float3 l, float3 v) {
     float kappa = 1.1529215e18f * (a.x * b.x + a.y * b.y + a.z * b.z) * rsqrt(max(squares, 1e-37f));
     return clamp(kappa, -1.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_STRAND_AZIMUTH_COSINE_CROSS_8FD5C78C
+#define VAIR_STRAND_AZIMUTH_COSINE_CROSS_8FD5C78C
 // Cosine of the angle between light and viewer around a strand, by plain cross products. Variant of
 // vair_strand_azimuth_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1864,7 +2169,10 @@ static inline float vair_strand_azimuth_cosine_cross(float3 t, float3 l, float3 
     float kappa = 1.1529215e18f * dot(a, b) * rsqrt(max(squares, 1e-37f));
     return clamp(kappa, -1.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_STRAND_AZIMUTH_COSINE_DOTS_F93E5052
+#define VAIR_STRAND_AZIMUTH_COSINE_DOTS_F93E5052
 // Cosine of the angle between light and viewer around a strand, from three inner products. Variant
 // of vair_strand_azimuth_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1885,7 +2193,10 @@ static inline float vair_strand_azimuth_cosine_dots(float3 t, float3 l, float3 v
     float squares = (1.0f - cos_l * cos_l) * (1.0f - cos_v * cos_v);
     return clamp((dot(l, v) - cos_l * cos_v) * rsqrt(max(squares, 1e-37f)), -1.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_STRAND_DEFECT_BD6B2063
+#define VAIR_STRAND_DEFECT_BD6B2063
 // Defect 1 - vair_strand_cosine of a strand.
 //   t        strand tangent, root to tip; unit vector
 //   l        direction to the light; unit vector
@@ -1898,7 +2209,10 @@ static inline float vair_strand_defect(float3 t, float3 l, float3 v) {
     float along = dot(t, l + v);
     return 0.5f * (across * across + along * along);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_B6DDD077
+#define VAIR_STRAND_COSINE_B6DDD077
 // Largest cosine between v and a mirror direction of l, over all unit normals orthogonal to the
 // strand.
 //   t           strand tangent, root to tip; unit vector
@@ -1913,7 +2227,10 @@ static inline float vair_strand_defect(float3 t, float3 l, float3 v) {
 static inline float vair_strand_cosine(float3 t, float3 l, float3 v) {
     return 1.0f - vair_strand_defect(t, l, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_DIRECT_C684DF95
+#define VAIR_STRAND_COSINE_DIRECT_C684DF95
 // Strand cosine with sines taken from the cosines: the obvious form, with one root. Variant of
 // vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1932,7 +2249,10 @@ static inline float vair_strand_cosine_direct(float3 t, float3 l, float3 v) {
     float sines = sqrt(max((1.0f - cos_l * cos_l) * (1.0f - cos_v * cos_v), 0.0f));
     return sines - cos_l * cos_v;
 }
+#endif
 
+#ifndef VAIR_STRAND_DEFECT_HALF_89C73C93
+#define VAIR_STRAND_DEFECT_HALF_89C73C93
 // Defect 1 - vair_strand_cosine of a strand by half angles: a square, from four squared lengths.
 //   t        strand tangent, root to tip; unit vector
 //   l        direction to the light; unit vector
@@ -1953,7 +2273,10 @@ static inline float vair_strand_defect_half(float3 t, float3 l, float3 v) {
     float gap = cosines - sines;
     return 0.125f * (gap * gap);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_HALF_A7A6D535
+#define VAIR_STRAND_COSINE_HALF_A7A6D535
 // Strand cosine by half angles, from four squared lengths. Variant of vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -1967,7 +2290,10 @@ static inline float vair_strand_defect_half(float3 t, float3 l, float3 v) {
 static inline float vair_strand_cosine_half(float3 t, float3 l, float3 v) {
     return 1.0f - vair_strand_defect_half(t, l, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_BANKS_PRINTED_D18E3C8B
+#define VAIR_STRAND_COSINE_BANKS_PRINTED_D18E3C8B
 // Strand cosine as the lecture prints it for Banks: the exact negative of the right value. As the
 // lecture prints it; right: vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1983,7 +2309,10 @@ static inline float vair_strand_cosine_half(float3 t, float3 l, float3 v) {
 static inline float vair_strand_cosine_banks_printed(float3 t, float3 l, float3 v) {
     return dot(t, l) * dot(t, v) - vair_sin_angle(t, l) * vair_sin_angle(t, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_KAJIYA_PRINTED_3E5EA62F
+#define VAIR_STRAND_COSINE_KAJIYA_PRINTED_3E5EA62F
 // Strand cosine as the lecture prints it for Kajiya and Kay: right only where l or v points inward.
 // As the lecture prints it; right: vair_strand_cosine.
 //   t           strand tangent, root to tip; unit vector
@@ -1998,7 +2327,10 @@ static inline float vair_strand_cosine_banks_printed(float3 t, float3 l, float3 
 static inline float vair_strand_cosine_kajiya_printed(float3 t, float3 l, float3 v) {
     return dot(t, l) * dot(t, v) + vair_sin_angle(t, l) * vair_sin_angle(t, v);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_89AFF274
+#define VAIR_STRAND_DIFFUSE_89AFF274
 // Diffuse factor of a thin cylinder: the sine of the angle between strand and light.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -2014,7 +2346,10 @@ static inline float vair_strand_cosine_kajiya_printed(float3 t, float3 l, float3
 static inline float vair_strand_diffuse(float3 t, float3 l) {
     return vair_sin_angle(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_HALF_39605829
+#define VAIR_STRAND_DIFFUSE_HALF_39605829
 // Diffuse factor of a thin cylinder by half angles: one root, good to 1e-4 rad. Variant of
 // vair_strand_diffuse.
 //   t           strand tangent, root to tip; unit vector
@@ -2029,7 +2364,10 @@ static inline float vair_strand_diffuse(float3 t, float3 l) {
 static inline float vair_strand_diffuse_half(float3 t, float3 l) {
     return vair_sin_angle_half(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_CROSS_B04E5286
+#define VAIR_STRAND_DIFFUSE_CROSS_B04E5286
 // Diffuse factor of a thin cylinder by the cross product: an absolute error of 1e-7. Variant of
 // vair_strand_diffuse.
 //   t           strand tangent, root to tip; unit vector
@@ -2044,7 +2382,10 @@ static inline float vair_strand_diffuse_half(float3 t, float3 l) {
 static inline float vair_strand_diffuse_cross(float3 t, float3 l) {
     return vair_sin_angle_cross(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_DIFFUSE_COSINE_2C9138C5
+#define VAIR_STRAND_DIFFUSE_COSINE_2C9138C5
 // Diffuse factor of a thin cylinder by the cosine: up to 9e-4 off along the strand. Variant of
 // vair_strand_diffuse.
 //   t           strand tangent, root to tip; unit vector
@@ -2058,7 +2399,10 @@ static inline float vair_strand_diffuse_cross(float3 t, float3 l) {
 static inline float vair_strand_diffuse_cosine(float3 t, float3 l) {
     return vair_sin_angle_cosine(t, l);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_DE2C7723
+#define VAIR_STRAND_SPECULAR_DE2C7723
 // Specular lobe of a strand: max(0, vair_strand_cosine)^exponent.
 //   t           strand tangent, root to tip; unit vector
 //   l           direction to the light; unit vector
@@ -2079,7 +2423,10 @@ static inline float vair_strand_diffuse_cosine(float3 t, float3 l) {
 static inline float vair_strand_specular(float3 t, float3 l, float3 v, float exponent) {
     return vair_pow_one_minus(vair_strand_defect(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_FROM4_2E76DBA4
+#define VAIR_STRAND_SPECULAR_FROM4_2E76DBA4
 // Specular lobe of a strand for exponents from 4 on, without a logarithm. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2096,7 +2443,10 @@ static inline float vair_strand_specular(float3 t, float3 l, float3 v, float exp
 static inline float vair_strand_specular_from4(float3 t, float3 l, float3 v, float exponent) {
     return vair_pow_one_minus_from4(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_GAUSS_406BEF07
+#define VAIR_STRAND_SPECULAR_GAUSS_406BEF07
 // Specular lobe of a strand for exponents from 8 on, by one exponential. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2112,7 +2462,10 @@ static inline float vair_strand_specular_from4(float3 t, float3 l, float3 v, flo
 static inline float vair_strand_specular_gauss(float3 t, float3 l, float3 v, float exponent) {
     return vair_pow_one_minus_gauss(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_SQ16_8F282EC1
+#define VAIR_STRAND_SPECULAR_SQ16_8F282EC1
 // Specular lobe of a strand for exponents from 8 on, without a transcendental function. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2129,7 +2482,10 @@ static inline float vair_strand_specular_gauss(float3 t, float3 l, float3 v, flo
 static inline float vair_strand_specular_sq16(float3 t, float3 l, float3 v, float exponent) {
     return vair_pow_one_minus_sq16(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_FROM8_565E9EAF
+#define VAIR_STRAND_SPECULAR_FROM8_565E9EAF
 // Specular lobe of a strand for exponents from 8 on, by one exponential and without a division.
 // Variant of vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2144,7 +2500,10 @@ static inline float vair_strand_specular_sq16(float3 t, float3 l, float3 v, floa
 static inline float vair_strand_specular_from8(float3 t, float3 l, float3 v, float exponent) {
     return vair_pow_one_minus_from8(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_CUBIC8_8184DFBB
+#define VAIR_STRAND_SPECULAR_CUBIC8_8184DFBB
 // Specular lobe of a strand for exponents from 8 on, without transcendental function or division.
 // Variant of vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2160,7 +2519,10 @@ static inline float vair_strand_specular_from8(float3 t, float3 l, float3 v, flo
 static inline float vair_strand_specular_cubic8(float3 t, float3 l, float3 v, float exponent) {
     return vair_pow_one_minus_cubic8(vair_strand_defect_half(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_DIRECT_B472E33E
+#define VAIR_STRAND_SPECULAR_DIRECT_B472E33E
 // Specular lobe of a strand as usually written: a power of the cosine. Variant of
 // vair_strand_specular.
 //   t           strand tangent, root to tip; unit vector
@@ -2179,7 +2541,10 @@ static inline float vair_strand_specular_cubic8(float3 t, float3 l, float3 v, fl
 static inline float vair_strand_specular_direct(float3 t, float3 l, float3 v, float exponent) {
     return vair_safe_pow_exp2(vair_strand_cosine_direct(t, l, v), exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_GAUSS_DC42E128
+#define VAIR_STRAND_SPECULAR_HALF_GAUSS_DC42E128
 // Half-vector lobe of a strand for exponents from 16 on, by one exponential. Variant of
 // vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -2195,7 +2560,10 @@ static inline float vair_strand_specular_half_gauss(float3 t, float3 h, float ex
     float c = dot(t, h);
     return vair_pow_one_minus_gauss(c * c, 0.5f * exponent);
 }
+#endif
 
+#ifndef VAIR_STRAND_SPECULAR_HALF_SQ16_10319414
+#define VAIR_STRAND_SPECULAR_HALF_SQ16_10319414
 // Half-vector lobe of a strand for exponents from 16 on, without a transcendental function. Variant
 // of vair_strand_specular_half.
 //   t           strand tangent, root to tip; unit vector
@@ -2211,7 +2579,10 @@ static inline float vair_strand_specular_half_sq16(float3 t, float3 h, float exp
     float c = dot(t, h);
     return vair_pow_one_minus_sq16(c * c, 0.5f * exponent);
 }
+#endif
 
+#ifndef VAIR_TANGENT_FROM_MAP_APART_20B43051
+#define VAIR_TANGENT_FROM_MAP_APART_20B43051
 // Per-pixel strand tangent of a brushed surface, for tangents that are well off the normal. Variant
 // of vair_tangent_from_map.
 //   n            surface normal; unit vector
@@ -2232,7 +2603,10 @@ static inline float3 vair_tangent_from_map_apart(float3 n, float3 t, float3 map_
     float2 unit = squared > 1e-37f ? rsqrt(max(squared, 1e-37f)) * texel : (float2)(1.0f, 0.0f);
     return unit.x * frame.tangent + unit.y * frame.bitangent;
 }
+#endif
 
+#ifndef VAIR_TANGENT_FROM_MAP_ORTHOGONAL_54490DC0
+#define VAIR_TANGENT_FROM_MAP_ORTHOGONAL_54490DC0
 // Per-pixel strand tangent of a brushed surface, for tangents that are orthogonal to the normal
 // already. Variant of vair_tangent_from_map.
 //   n            surface normal; unit vector
@@ -2253,7 +2627,10 @@ static inline float3 vair_tangent_from_map_orthogonal(float3 n, float3 t, float3
     float2 unit = squared > 1e-37f ? rsqrt(max(squared, 1e-37f)) * texel : (float2)(1.0f, 0.0f);
     return unit.x * frame.tangent + unit.y * frame.bitangent;
 }
+#endif
 
+#ifndef VAIR_TANGENT_SHIFT_APART_FEE21CC3
+#define VAIR_TANGENT_SHIFT_APART_FEE21CC3
 // Strand tangent tilted toward the surface normal, where the sum is not zero. Variant of
 // vair_tangent_shift.
 //   t           strand tangent, root to tip; unit vector
@@ -2269,7 +2646,10 @@ static inline float3 vair_tangent_from_map_orthogonal(float3 n, float3 t, float3
 static inline float3 vair_tangent_shift_apart(float3 t, float3 n, float shift) {
     return vair_safe_normalize_nonzero(t + shift * n, t);
 }
+#endif
 
+#ifndef VAIR_TANGENT_SHIFT_ORTHOGONAL_F82EF805
+#define VAIR_TANGENT_SHIFT_ORTHOGONAL_F82EF805
 // Strand tangent tilted toward a surface normal that is orthogonal to it. Variant of
 // vair_tangent_shift.
 //   t           strand tangent, root to tip; orthogonal to n; unit vector
@@ -2285,7 +2665,10 @@ static inline float3 vair_tangent_shift_apart(float3 t, float3 n, float shift) {
 static inline float3 vair_tangent_shift_orthogonal(float3 t, float3 n, float shift) {
     return rsqrt(1.0f + shift * shift) * (t + shift * n);
 }
+#endif
 
+#ifndef VAIR_FUR_HAIR_AREA_E8ED3495
+#define VAIR_FUR_HAIR_AREA_E8ED3495
 // Silhouette area of one hair, a truncated cone, seen from the side.
 //   hair_length  length of the hair; in [0, 1000]
 //   radius_base  radius at the skin; in [0, 10]
@@ -2300,7 +2683,10 @@ static inline float3 vair_tangent_shift_orthogonal(float3 t, float3 n, float shi
 static inline float vair_fur_hair_area(float hair_length, float radius_base, float radius_tip) {
     return hair_length * (radius_base + radius_tip);
 }
+#endif
 
+#ifndef VAIR_FUR_SLAB_DEPTH_8C346331
+#define VAIR_FUR_SLAB_DEPTH_8C346331
 // Optical depth from quantities that a caller already has.
 //   hair_cover  hair area that stands on a unit of skin: density times area of a hair; in [0, 2e13]
 //   sine        sine of the angle between the direction and the hairs; in [0, 1]
@@ -2312,7 +2698,10 @@ static inline float vair_fur_hair_area(float hair_length, float radius_base, flo
 static inline float vair_fur_slab_depth(float hair_cover, float sine, float cosine) {
     return min(hair_cover * sine / max(cosine, 1e-12f), 1e9f);
 }
+#endif
 
+#ifndef VAIR_FUR_GEOMETRY_365ED3C4
+#define VAIR_FUR_GEOMETRY_365ED3C4
 // Angles and optical depths of a coat for one light.
 //   coat        geometry of the coat
 //   t           hair direction, root to tip; unit vector
@@ -2347,7 +2736,10 @@ static inline vair_FurGeometry vair_fur_geometry(vair_FurCoat coat, float3 t, fl
         vair_fur_slab_depth(hair_cover, sin_v, dot(n, v)),
         vair_fur_slab_depth(hair_cover, sin_l, n_dot_l)};
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_412377F8
+#define VAIR_FUR_WEIGHTS_GOLDMAN_412377F8
 // Weights of hair and skin by Goldman's rule: opacity along the view times shadow along the light.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
 //   depth_light  optical depth of the coat along the light; in [0, 1e9]
@@ -2374,7 +2766,10 @@ static inline vair_FurWeights vair_fur_weights_goldman(float depth_view, float d
     float hair = opacity * (1.0f - overlap + overlap * clear_light);
     return (vair_FurWeights){hair, clear_view * clear_light};
 }
+#endif
 
+#ifndef VAIR_FUR_DIRECTIONAL_ATTENUATION_DDACB13E
+#define VAIR_FUR_DIRECTIONAL_ATTENUATION_DDACB13E
 // Attenuation f_dir of a hair: rho_reflect when front lit, rho_transmit when back lit.
 //   azimuth_cosine  cosine of the angle between light and viewer around the hair, see
 //                   vair_strand_azimuth_cosine; in [-1, 1]
@@ -2392,7 +2787,10 @@ static inline float vair_fur_directional_attenuation(float azimuth_cosine, float
     return 0.5f * (rho_reflect + rho_transmit) + 0.5f * azimuth_cosine
         * (rho_reflect - rho_transmit);
 }
+#endif
 
+#ifndef VAIR_FUR_SURFACE_ATTENUATION_6EA871F5
+#define VAIR_FUR_SURFACE_ATTENUATION_6EA871F5
 // Attenuation f_surface of hairs on the side that is turned away from the light.
 //   n_dot_l      cosine between surface normal and light; in [-1, 1]
 //   rho_surface  strength of the shadow; 0 gives 1 everywhere; in [0, 1]
@@ -2411,7 +2809,10 @@ static inline float vair_fur_surface_attenuation(float n_dot_l, float rho_surfac
     float cos_lit) {
     return 1.0f + rho_surface * (vair_safe_smoothstep(cos_dark, cos_lit, n_dot_l) - 1.0f);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_BLEND_2C9FF1AA
+#define VAIR_FAKEFUR_BLEND_2C9FF1AA
 // Hair and skin, each attenuated and weighted, under one light.
 //   optics     optical properties of the hairs
 //   geometry   directions and depths, see vair_fur_geometry
@@ -2432,7 +2833,10 @@ static inline float3 vair_fakefur_blend(vair_FurOptics optics, vair_FurGeometry 
     float3 hair = optics.k_diffuse * geometry.sin_l + optics.k_specular * highlight;
     return light * (hair * (weights.hair * directional * surface) + skin * weights.skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_C2D9D4E8
+#define VAIR_FAKEFUR_SHADE_C2D9D4E8
 // Light that a fur coat sends to the viewer under one light, by Goldman's model.
 //   coat        geometry of the coat
 //   optics      optical properties of the hairs
@@ -2471,7 +2875,10 @@ static inline float3 vair_fakefur_shade(vair_FurCoat coat, vair_FurOptics optics
     float highlight = vair_pow_one_minus(geometry.defect, optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_FROM4_EBD5D82A
+#define VAIR_FAKEFUR_SHADE_FROM4_EBD5D82A
 // Goldman's model for highlights of exponent 4 and more, without a logarithm. Variant of
 // vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2499,7 +2906,10 @@ static inline float3 vair_fakefur_shade_from4(vair_FurCoat coat, vair_FurOptics 
     float highlight = vair_pow_one_minus_from4(geometry.defect, optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_0F9E2AEE
+#define VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_0F9E2AEE
 // Goldman's weights without an exponential and with one division. Variant of
 // vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -2522,7 +2932,10 @@ static inline vair_FurWeights vair_fur_weights_goldman_rational(float depth_view
     float hair = growth_view * (1.0f + (1.0f - overlap) * growth_light) * skin;
     return (vair_FurWeights){hair, skin};
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_RATIONAL_SQ16_FC739453
+#define VAIR_FAKEFUR_SHADE_RATIONAL_SQ16_FC739453
 // Goldman's model for highlights of exponent 16 and more, without exponential or logarithm. Variant
 // of vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2551,7 +2964,10 @@ static inline float3 vair_fakefur_shade_rational_sq16(vair_FurCoat coat, vair_Fu
     float highlight = vair_pow_one_minus_sq16(min(geometry.defect, 1.9f), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_SLAB_AC757F19
+#define VAIR_FUR_WEIGHTS_SLAB_AC757F19
 // Weights of hair and skin in a uniform coat whose hairs scatter the light once.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
 //   depth_light  optical depth of the coat along the light; in [0, 1e9]
@@ -2576,7 +2992,10 @@ static inline vair_FurWeights vair_fur_weights_slab(float depth_view, float dept
     float mean = depth < 0.7f ? series : (1.0f - clear) / max(depth, 0.7f);
     return (vair_FurWeights){depth_view * mean, clear};
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_7201FD68
+#define VAIR_FAKEFUR_SHADE_SLAB_7201FD68
 // Fake fur with the exact weights of a uniform coat instead of Goldman's rule: another model.
 // Variant of vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2611,7 +3030,10 @@ static inline float3 vair_fakefur_shade_slab(vair_FurCoat coat, vair_FurOptics o
     float highlight = vair_pow_one_minus(geometry.defect, optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_SLAB_RATIONAL_BFA427CD
+#define VAIR_FUR_WEIGHTS_SLAB_RATIONAL_BFA427CD
 // Weights of the uniform coat without an exponential and with one division. Variant of
 // vair_fur_weights_slab.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -2631,7 +3053,10 @@ static inline vair_FurWeights vair_fur_weights_slab_rational(float depth_view, f
     float skin = 1.0f / (1.0f + depth * growth);
     return (vair_FurWeights){depth_view * growth * skin, skin};
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_SQ16_D30D7E21
+#define VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_SQ16_D30D7E21
 // Fake fur of a uniform coat for highlights of exponent 16 and more, without exponential or
 // logarithm. Variant of vair_fakefur_shade_slab.
 //   coat        geometry of the coat
@@ -2659,7 +3084,10 @@ static inline float3 vair_fakefur_shade_slab_rational_sq16(vair_FurCoat coat, va
     float highlight = vair_pow_one_minus_sq16(min(geometry.defect, 1.9f), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_HAIR_AREA_PRINTED_B18441A6
+#define VAIR_FUR_HAIR_AREA_PRINTED_B18441A6
 // Area of a hair as the lecture prints it: half the silhouette, right only if its radii mean
 // diameters. As the lecture prints it; right: vair_fur_hair_area.
 //   hair_length  length of the hair; in [0, 1000]
@@ -2674,7 +3102,10 @@ static inline float vair_fur_hair_area_printed(float hair_length, float radius_b
     float radius_tip) {
     return hair_length * (radius_base + radius_tip) * 0.5f;
 }
+#endif
 
+#ifndef VAIR_FUR_OBLIQUITY_B83CAF9A
+#define VAIR_FUR_OBLIQUITY_B83CAF9A
 // Ratio of a coat's optical depth along w to the hair area that stands on a unit of skin.
 //   t           hair direction; unit vector
 //   n           surface normal; unit vector
@@ -2692,7 +3123,10 @@ static inline float vair_fur_hair_area_printed(float hair_length, float radius_b
 static inline float vair_fur_obliquity(float3 t, float3 n, float3 w) {
     return vair_sin_angle(w, t) / max(dot(w, n), 1e-12f);
 }
+#endif
 
+#ifndef VAIR_TURN_OF_5A6E33B1
+#define VAIR_TURN_OF_5A6E33B1
 // Angle of the point (x, y) from the x axis as a share of a full turn: atan2(y, x) / (2 pi).
 //   y           second coordinate; in [-1e30, 1e30]
 //   x           first coordinate; in [-1e30, 1e30]
@@ -2718,7 +3152,10 @@ static inline float vair_turn_of(float y, float x) {
     float upper = x < 0.0f ? 0.5f - quadrant : quadrant;
     return y < 0.0f ? -upper : upper;
 }
+#endif
 
+#ifndef VAIR_ANGLE_OF_COSINE_B6A02AA6
+#define VAIR_ANGLE_OF_COSINE_B6A02AA6
 // Angle whose cosine is x.
 //   x        cosine, in [-1, 1]
 //   returns  acos(x), in [0, pi]
@@ -2728,7 +3165,10 @@ static inline float vair_turn_of(float y, float x) {
 static inline float vair_angle_of_cosine(float x) {
     return 6.2831855f * vair_turn_of(vair_safe_sqrt((1.0f - x) * (1.0f + x)), x);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_PRINTED_923491A3
+#define VAIR_FAKEFUR_SHADE_PRINTED_923491A3
 // Goldman's model as the lecture prints it, misprints included. As the lecture prints it; right:
 // vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2766,7 +3206,10 @@ static inline float3 vair_fakefur_shade_printed(vair_FurCoat coat, vair_FurOptic
     float3 hair = bare * ((1.0f - 0.5f * opacity) * directional * surface);
     return light * (hair * opacity + skin * ((1.0f - opacity) * (1.0f - opacity)));
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_RATIONAL_CUBIC8_27BD584A
+#define VAIR_FAKEFUR_SHADE_RATIONAL_CUBIC8_27BD584A
 // Goldman's model for highlights of exponent 8 and more, without exponential or logarithm. Variant
 // of vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2795,7 +3238,10 @@ static inline float3 vair_fakefur_shade_rational_cubic8(vair_FurCoat coat, vair_
     float highlight = vair_pow_one_minus_cubic8(min(geometry.defect, 1.9f), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_DOUBLING_SHORT_6F6FBF9E
+#define VAIR_FUR_WEIGHTS_GOLDMAN_DOUBLING_SHORT_6F6FBF9E
 // Goldman's weights without an exponential and without a division. Variant of
 // vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -2815,7 +3261,10 @@ static inline vair_FurWeights vair_fur_weights_goldman_doubling_short(float dept
     float hair = opacity_view * (1.0f - overlap * opacity_light);
     return (vair_FurWeights){hair, (1.0f - opacity_view) * (1.0f - opacity_light)};
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_DOUBLING_CUBIC8_1217E7F8
+#define VAIR_FAKEFUR_SHADE_DOUBLING_CUBIC8_1217E7F8
 // Goldman's model for highlights of exponent 8 and more, by polynomials alone. Variant of
 // vair_fakefur_shade.
 //   coat        geometry of the coat
@@ -2844,7 +3293,10 @@ static inline float3 vair_fakefur_shade_doubling_cubic8(vair_FurCoat coat, vair_
     float highlight = vair_pow_one_minus_cubic8(min(geometry.defect, 1.9f), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_FROM4_E436A0AD
+#define VAIR_FAKEFUR_SHADE_SLAB_FROM4_E436A0AD
 // Fake fur of a uniform coat for highlights of exponent 4 and more, without a logarithm. Variant of
 // vair_fakefur_shade_slab.
 //   coat        geometry of the coat
@@ -2871,7 +3323,10 @@ static inline float3 vair_fakefur_shade_slab_from4(vair_FurCoat coat, vair_FurOp
     float highlight = vair_pow_one_minus_from4(min(geometry.defect, 1.9f), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_CUBIC8_B9C82023
+#define VAIR_FAKEFUR_SHADE_SLAB_RATIONAL_CUBIC8_B9C82023
 // Fake fur of a uniform coat for highlights of exponent 8 and more, without exponential or
 // logarithm. Variant of vair_fakefur_shade_slab.
 //   coat        geometry of the coat
@@ -2900,7 +3355,10 @@ static inline float3 vair_fakefur_shade_slab_rational_cubic8(vair_FurCoat coat,
     float highlight = vair_pow_one_minus_cubic8(min(geometry.defect, 1.9f), optics.exponent);
     return vair_fakefur_blend(optics, geometry, weights, highlight, light, skin);
 }
+#endif
 
+#ifndef VAIR_FUR_AVERAGE_5CCB701C
+#define VAIR_FUR_AVERAGE_5CCB701C
 // Average hair geometry of a footprint from the mean of its unit hair directions.
 //   tangent_mean  mean of unit vectors, as the filtered (mip mapped) tangent map gives it; length
 //                 in [0, 1]
@@ -2919,7 +3377,10 @@ static inline vair_FurAverage vair_fur_average(float3 tangent_mean) {
     return (vair_FurAverage){vair_safe_normalize(tangent_mean, (float3)(0.0f, 0.0f, 1.0f)),
         (1.0f - m) / m};
 }
+#endif
 
+#ifndef VAIR_FUR_DIRECTIONAL_ATTENUATION_BLEND_F70615F7
+#define VAIR_FUR_DIRECTIONAL_ATTENUATION_BLEND_F70615F7
 // Attenuation f_dir of a hair, as a step from rho_transmit towards rho_reflect. Variant of
 // vair_fur_directional_attenuation.
 //   azimuth_cosine  cosine of the angle between light and viewer around the hair, see
@@ -2937,7 +3398,10 @@ static inline float vair_fur_directional_attenuation_blend(float azimuth_cosine,
     float rho_transmit) {
     return rho_transmit + (0.5f + 0.5f * azimuth_cosine) * (rho_reflect - rho_transmit);
 }
+#endif
 
+#ifndef VAIR_FUR_DIRECTIONAL_ATTENUATION_MEAN_9670D943
+#define VAIR_FUR_DIRECTIONAL_ATTENUATION_MEAN_9670D943
 // Attenuation f_dir of a hair whatever side it is seen from. Variant of
 // vair_fur_directional_attenuation.
 //   azimuth_cosine  not used: what computes it can be left out; in [-1, 1]
@@ -2954,7 +3418,10 @@ static inline float vair_fur_directional_attenuation_mean(float azimuth_cosine, 
     float rho_transmit) {
     return 0.5f * (rho_reflect + rho_transmit);
 }
+#endif
 
+#ifndef VAIR_FUR_OBLIQUITY_HALF_BCF71E2B
+#define VAIR_FUR_OBLIQUITY_HALF_BCF71E2B
 // Ratio of a coat's optical depth along w to the hair area below it, for w off the hairs. Variant
 // of vair_fur_obliquity.
 //   t           hair direction; unit vector
@@ -2969,7 +3436,10 @@ static inline float vair_fur_directional_attenuation_mean(float azimuth_cosine, 
 static inline float vair_fur_obliquity_half(float3 t, float3 n, float3 w) {
     return vair_sin_angle_half(w, t) / max(dot(w, n), 1e-12f);
 }
+#endif
 
+#ifndef VAIR_FUR_OBLIQUITY_CROSS_DAD821F9
+#define VAIR_FUR_OBLIQUITY_CROSS_DAD821F9
 // Ratio of a coat's optical depth along w to the hair area below it, for w off the hairs. Variant
 // of vair_fur_obliquity.
 //   t           hair direction; unit vector
@@ -2984,7 +3454,10 @@ static inline float vair_fur_obliquity_half(float3 t, float3 n, float3 w) {
 static inline float vair_fur_obliquity_cross(float3 t, float3 n, float3 w) {
     return vair_sin_angle_cross(w, t) / max(dot(w, n), 1e-12f);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_E2DCA5E9
+#define VAIR_FUR_OPACITY_E2DCA5E9
 // Share of the skin that is hidden by hairs.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
 //                  1e9]
@@ -2997,7 +3470,10 @@ static inline float vair_fur_obliquity_cross(float3 t, float3 n, float3 w) {
 static inline float vair_fur_opacity(float optical_depth) {
     return vair_one_minus_exp_neg(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_RATIONAL_671AB8B0
+#define VAIR_FUR_OPACITY_RATIONAL_671AB8B0
 // Share of the skin that is hidden by hairs, as a ratio of polynomials. Variant of
 // vair_fur_opacity.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
@@ -3010,7 +3486,10 @@ static inline float vair_fur_opacity(float optical_depth) {
 static inline float vair_fur_opacity_rational(float optical_depth) {
     return vair_one_minus_exp_neg_rational(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_DOUBLING_SHORT_0EFA794B
+#define VAIR_FUR_OPACITY_DOUBLING_SHORT_0EFA794B
 // Share of the skin that is hidden by hairs, by four doublings of a quadratic. Variant of
 // vair_fur_opacity.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
@@ -3023,7 +3502,10 @@ static inline float vair_fur_opacity_rational(float optical_depth) {
 static inline float vair_fur_opacity_doubling_short(float optical_depth) {
     return vair_one_minus_exp_neg_doubling_short(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPACITY_RATIONAL_COARSE_D3A60AB3
+#define VAIR_FUR_OPACITY_RATIONAL_COARSE_D3A60AB3
 // Share of the skin that is hidden by hairs, as a ratio of polynomials of low degree. Variant of
 // vair_fur_opacity.
 //   optical_depth  depth of the coat along the line of sight, see vair_fur_optical_depth; in [0,
@@ -3036,7 +3518,10 @@ static inline float vair_fur_opacity_doubling_short(float optical_depth) {
 static inline float vair_fur_opacity_rational_coarse(float optical_depth) {
     return vair_one_minus_exp_neg_rational_coarse(optical_depth);
 }
+#endif
 
+#ifndef VAIR_FUR_OPTICAL_DEPTH_FD108AE0
+#define VAIR_FUR_OPTICAL_DEPTH_FD108AE0
 // Optical depth of a coat along a direction: the mean number of hairs that a ray meets.
 //   density     hairs per unit of skin area; in [0, 1e9]
 //   hair_area   silhouette area of one hair, see vair_fur_hair_area; in [0, 20000]
@@ -3056,7 +3541,10 @@ static inline float vair_fur_optical_depth(float density, float hair_area, float
     float3 w) {
     return vair_fur_slab_depth(density * hair_area, vair_sin_angle(w, t), dot(w, n));
 }
+#endif
 
+#ifndef VAIR_FUR_OPTICAL_DEPTH_HALF_06C3304F
+#define VAIR_FUR_OPTICAL_DEPTH_HALF_06C3304F
 // Optical depth of a coat along a direction off the hairs. Variant of vair_fur_optical_depth.
 //   density     hairs per unit of skin area; in [0, 1e9]
 //   hair_area   silhouette area of one hair, see vair_fur_hair_area; in [0, 20000]
@@ -3073,7 +3561,10 @@ static inline float vair_fur_optical_depth_half(float density, float hair_area, 
     float3 w) {
     return vair_fur_slab_depth(density * hair_area, vair_sin_angle_half(w, t), dot(w, n));
 }
+#endif
 
+#ifndef VAIR_FUR_OPTICAL_DEPTH_CROSS_71D4C560
+#define VAIR_FUR_OPTICAL_DEPTH_CROSS_71D4C560
 // Optical depth of a coat along a direction off the hairs. Variant of vair_fur_optical_depth.
 //   density     hairs per unit of skin area; in [0, 1e9]
 //   hair_area   silhouette area of one hair, see vair_fur_hair_area; in [0, 20000]
@@ -3090,7 +3581,10 @@ static inline float vair_fur_optical_depth_cross(float density, float hair_area,
     float3 w) {
     return vair_fur_slab_depth(density * hair_area, vair_sin_angle_cross(w, t), dot(w, n));
 }
+#endif
 
+#ifndef VAIR_FUR_SOFT_EXPONENT_8A81BAD5
+#define VAIR_FUR_SOFT_EXPONENT_8A81BAD5
 // Exponent of the strand highlight averaged over the hairs of a footprint.
 //   exponent        exponent p of a single hair; in [0, 100000]
 //   variance        variance of the hair directions, see vair_fur_average; in [0, 999]
@@ -3109,7 +3603,10 @@ static inline float vair_fur_optical_depth_cross(float density, float hair_area,
 static inline float vair_fur_soft_exponent(float exponent, float variance, float azimuth_cosine) {
     return exponent / (1.0f + 2.0f * (1.0f + azimuth_cosine) * exponent * variance);
 }
+#endif
 
+#ifndef VAIR_FUR_SURFACE_ATTENUATION_RISING_E82CFBAB
+#define VAIR_FUR_SURFACE_ATTENUATION_RISING_E82CFBAB
 // Attenuation f_surface of hairs by the surface below them, for cos_dark < cos_lit. Variant of
 // vair_fur_surface_attenuation.
 //   n_dot_l      cosine between surface normal and light; in [-1, 1]
@@ -3126,7 +3623,10 @@ static inline float vair_fur_surface_attenuation_rising(float n_dot_l, float rho
     float cos_dark, float cos_lit) {
     return 1.0f + rho_surface * (vair_safe_smoothstep_rising(cos_dark, cos_lit, n_dot_l) - 1.0f);
 }
+#endif
 
+#ifndef VAIR_FUR_SURFACE_ATTENUATION_RAMP_27678FEC
+#define VAIR_FUR_SURFACE_ATTENUATION_RAMP_27678FEC
 // Attenuation f_surface of hairs by the surface below them, by a straight step, for cos_dark <
 // cos_lit. Variant of vair_fur_surface_attenuation.
 //   n_dot_l      cosine between surface normal and light; in [-1, 1]
@@ -3143,7 +3643,10 @@ static inline float vair_fur_surface_attenuation_ramp(float n_dot_l, float rho_s
     float cos_dark, float cos_lit) {
     return 1.0f + rho_surface * (vair_safe_smoothstep_ramp(cos_dark, cos_lit, n_dot_l) - 1.0f);
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_QUADRATIC16_B7286C24
+#define VAIR_FUR_WEIGHTS_GOLDMAN_QUADRATIC16_B7286C24
 // Goldman's weights from transmittances that are sixteenth powers: no exponential, no division.
 // Variant of vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -3164,7 +3667,10 @@ static inline vair_FurWeights vair_fur_weights_goldman_quadratic16(float depth_v
     float hair = (1.0f - clear_view) * (1.0f - overlap + overlap * clear_light);
     return (vair_FurWeights){hair, clear_view * clear_light};
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_COARSE_E1C7662E
+#define VAIR_FUR_WEIGHTS_GOLDMAN_RATIONAL_COARSE_E1C7662E
 // Goldman's weights by polynomials of low degree and one division: one percent. Variant of
 // vair_fur_weights_goldman.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -3184,7 +3690,10 @@ static inline vair_FurWeights vair_fur_weights_goldman_rational_coarse(float dep
     float hair = growth_view * (1.0f + (1.0f - overlap) * growth_light) * skin;
     return (vair_FurWeights){hair, skin};
 }
+#endif
 
+#ifndef VAIR_FUR_WEIGHTS_SLAB_RATIONAL_COARSE_AC18EAED
+#define VAIR_FUR_WEIGHTS_SLAB_RATIONAL_COARSE_AC18EAED
 // Weights of the uniform coat by a polynomial of low degree and one division: one percent. Variant
 // of vair_fur_weights_slab.
 //   depth_view   optical depth of the coat along the view; in [0, 1e9]
@@ -3202,7 +3711,10 @@ static inline vair_FurWeights vair_fur_weights_slab_rational_coarse(float depth_
     float skin = 1.0f / (1.0f + depth * growth);
     return (vair_FurWeights){depth_view * growth * skin, skin};
 }
+#endif
 
+#ifndef VAIR_BLEND_OVER_D9981123
+#define VAIR_BLEND_OVER_D9981123
 // Colour of a layer drawn over another one, with straight alpha.
 //   under       linear RGB behind the layer; in [0, 10000]
 //   over        linear RGB of the layer, not multiplied by alpha; in [0, 10000]
@@ -3220,7 +3732,10 @@ static inline vair_FurWeights vair_fur_weights_slab_rational_coarse(float depth_
 static inline float3 vair_blend_over(float3 under, float3 over, float alpha) {
     return under * max(1.0f - alpha, 0.0f) + over * alpha;
 }
+#endif
 
+#ifndef VAIR_FIN_NORMAL_C80629B6
+#define VAIR_FIN_NORMAL_C80629B6
 // Normal of the fin that stands on an edge of the mesh.
 //   edge        difference of the two vertices of the edge, of any length; length in [1e-6,
 //               1000000]
@@ -3238,7 +3753,10 @@ static inline float3 vair_fin_normal(float3 edge, float3 n) {
         - edge.y * n.x);
     return vair_safe_normalize(across, vair_frame_from_normal(n).tangent);
 }
+#endif
 
+#ifndef VAIR_FIN_NORMAL_DOT_9C3B86AB
+#define VAIR_FIN_NORMAL_DOT_9C3B86AB
 // Normal of the fin that stands on an edge of ordinary length. Variant of vair_fin_normal.
 //   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6
 //   n           surface normal; unit vector
@@ -3253,7 +3771,10 @@ static inline float3 vair_fin_normal_dot(float3 edge, float3 n) {
         - edge.y * n.x);
     return vair_safe_normalize_dot(across, vair_frame_from_normal(n).tangent);
 }
+#endif
 
+#ifndef VAIR_FIN_NORMAL_APART_21357ACE
+#define VAIR_FIN_NORMAL_APART_21357ACE
 // Normal of the fin that stands on an edge well off the surface normal. Variant of vair_fin_normal.
 //   edge        difference of the two vertices of the edge, of length 1e-6 to 1e6
 //   n           surface normal; unit vector
@@ -3268,7 +3789,10 @@ static inline float3 vair_fin_normal_apart(float3 edge, float3 n) {
         - edge.y * n.x);
     return rsqrt(max(dot(across, across), 1e-37f)) * across;
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_78CCF0A1
+#define VAIR_FIN_OPACITY_78CCF0A1
 // Opacity of a fin: it fades in as it turns its face to the viewer.
 //   v           direction to the viewer; unit vector
 //   n_fin       normal of the fin, see vair_fin_normal; its sign does not matter; unit vector
@@ -3280,7 +3804,10 @@ static inline float3 vair_fin_normal_apart(float3 edge, float3 n) {
 static inline float vair_fin_opacity(float3 v, float3 n_fin) {
     return clamp(2.0f * fabs(dot(v, n_fin)) - 1.0f, 0.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_SILHOUETTE_048B8866
+#define VAIR_FIN_OPACITY_SILHOUETTE_048B8866
 // Opacity of a fin from the two faces that share its edge.
 //   facing_a    cosine between the direction to the viewer and the normal of one face; in [-1, 1]
 //   facing_b    the same for the other face; in [-1, 1]
@@ -3296,7 +3823,10 @@ static inline float vair_fin_opacity_silhouette(float facing_a, float facing_b, 
     float grazing = min(fabs(facing_a), fabs(facing_b)) / max(threshold, 1e-6f);
     return facing_a * facing_b <= 0.0f ? 1.0f : clamp(1.0f - grazing, 0.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_SURFACE_12BACB78
+#define VAIR_FIN_OPACITY_SURFACE_12BACB78
 // Opacity of a fin from the surface normal alone: an upper bound of vair_fin_opacity.
 //   v           direction to the viewer; unit vector
 //   n           surface normal; unit vector
@@ -3310,7 +3840,10 @@ static inline float vair_fin_opacity_silhouette(float facing_a, float facing_b, 
 static inline float vair_fin_opacity_surface(float3 v, float3 n) {
     return clamp(2.0f * vair_sin_angle(v, n) - 1.0f, 0.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_FIN_OPACITY_SURFACE_COSINE_627D48BA
+#define VAIR_FIN_OPACITY_SURFACE_COSINE_627D48BA
 // Opacity of a fin from the surface normal alone, by the cosine. Variant of
 // vair_fin_opacity_surface.
 //   v           direction to the viewer; unit vector
@@ -3324,7 +3857,10 @@ static inline float vair_fin_opacity_surface(float3 v, float3 n) {
 static inline float vair_fin_opacity_surface_cosine(float3 v, float3 n) {
     return clamp(2.0f * vair_sin_angle_cosine(v, n) - 1.0f, 0.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_FIN_POSITION_BDE3F413
+#define VAIR_FIN_POSITION_BDE3F413
 // Position of a fin vertex: an edge of the mesh is drawn as a quad, once with w = 0 and once with w
 // = 1.
 //   position     vertex of the edge, in scene units; in [-1000, 1000]
@@ -3341,7 +3877,10 @@ static inline float vair_fin_opacity_surface_cosine(float3 v, float3 n) {
 static inline float3 vair_fin_position(float3 position, float3 n, float w, float coat_length) {
     return position + w * coat_length * n;
 }
+#endif
 
+#ifndef VAIR_LAYERED_ALPHA_412A2493
+#define VAIR_LAYERED_ALPHA_412A2493
 // Opacity of a number of equal layers, or of a share of one.
 //   alpha       opacity of one layer, in [0, 1]
 //   layers      number of layers, in [1e-4, 1e5]
@@ -3354,7 +3893,10 @@ static inline float vair_layered_alpha(float alpha, float layers) {
     float depth = -layers * vair_log_one_minus(min(alpha, 0.99999994f));
     return alpha < 1.0f ? vair_one_minus_exp_neg(depth) : 1.0f;
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_RESAMPLE_AAC3B041
+#define VAIR_SHELL_ALPHA_RESAMPLE_AAC3B041
 // Opacity per layer that keeps the opacity of the whole coat for another number of layers.
 //   alpha       opacity of a layer as authored; in [0, 1]
 //   authored    number of blended layers, the opaque base not counted, that alpha was made for; in
@@ -3369,7 +3911,10 @@ static inline float vair_layered_alpha(float alpha, float layers) {
 static inline float vair_shell_alpha_resample(float alpha, float authored, float drawn) {
     return vair_layered_alpha(alpha, authored / max(drawn, 1.0f));
 }
+#endif
 
+#ifndef VAIR_LAYERED_ALPHA_DIRECT_ABF94B85
+#define VAIR_LAYERED_ALPHA_DIRECT_ABF94B85
 // Opacity of a number of equal layers, to a small absolute error.
 //   alpha       opacity of one layer, in [0, 1]
 //   layers      number of layers, in [1e-4, 1e5]
@@ -3381,7 +3926,10 @@ static inline float vair_layered_alpha_direct(float alpha, float layers) {
     float left = exp(max(layers * log(max(1.0f - alpha, 1.2e-38f)), -80.0f));
     return alpha < 1.0f ? 1.0f - left : 1.0f;
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_RESAMPLE_DIRECT_9EFDC78A
+#define VAIR_SHELL_ALPHA_RESAMPLE_DIRECT_9EFDC78A
 // Opacity per layer that keeps the opacity of the whole coat for another number of layers. Variant
 // of vair_shell_alpha_resample.
 //   alpha       opacity of a layer as authored; in [0, 1]
@@ -3396,7 +3944,10 @@ static inline float vair_layered_alpha_direct(float alpha, float layers) {
 static inline float vair_shell_alpha_resample_direct(float alpha, float authored, float drawn) {
     return vair_layered_alpha_direct(alpha, authored / max(drawn, 1.0f));
 }
+#endif
 
+#ifndef VAIR_LAYERED_ALPHA_THIN_55B35630
+#define VAIR_LAYERED_ALPHA_THIN_55B35630
 // Opacity of a number of equal layers that are at most half opaque, to 0.1 percent.
 //   alpha       opacity of one layer, in [0, 0.5]
 //   layers      number of layers, in [1e-4, 1e5]
@@ -3408,7 +3959,10 @@ static inline float vair_shell_alpha_resample_direct(float alpha, float authored
 static inline float vair_layered_alpha_thin(float alpha, float layers) {
     return vair_one_minus_exp_neg_doubling_short(-layers * vair_log_one_minus_thin(alpha));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_RESAMPLE_THIN_9C8B35B4
+#define VAIR_SHELL_ALPHA_RESAMPLE_THIN_9C8B35B4
 // Opacity per layer that keeps the opacity of the whole coat for another number of layers. Variant
 // of vair_shell_alpha_resample.
 //   alpha       opacity of a layer as authored, at most 1/2; in [0, 0.5]
@@ -3423,7 +3977,10 @@ static inline float vair_layered_alpha_thin(float alpha, float layers) {
 static inline float vair_shell_alpha_resample_thin(float alpha, float authored, float drawn) {
     return vair_layered_alpha_thin(alpha, authored / max(drawn, 1.0f));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_VIEW_A405D51A
+#define VAIR_SHELL_ALPHA_VIEW_A405D51A
 // Opacity of a layer along a slanted line of sight.
 //   alpha       opacity of the layer seen along the normal; in [0, 1]
 //   n_dot_v     cosine between surface normal and viewer; shells are seen from behind too, so its
@@ -3437,7 +3994,10 @@ static inline float vair_shell_alpha_resample_thin(float alpha, float authored, 
 static inline float vair_shell_alpha_view(float alpha, float n_dot_v) {
     return vair_layered_alpha(alpha, 1.0f / max(fabs(n_dot_v), 1e-5f));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_VIEW_DIRECT_CE051EF6
+#define VAIR_SHELL_ALPHA_VIEW_DIRECT_CE051EF6
 // Opacity of a layer along a slanted line of sight. Variant of vair_shell_alpha_view.
 //   alpha       opacity of the layer seen along the normal; in [0, 1]
 //   n_dot_v     cosine between surface normal and viewer; its sign is ignored; in [-1, 1]
@@ -3450,7 +4010,10 @@ static inline float vair_shell_alpha_view(float alpha, float n_dot_v) {
 static inline float vair_shell_alpha_view_direct(float alpha, float n_dot_v) {
     return vair_layered_alpha_direct(alpha, 1.0f / max(fabs(n_dot_v), 1e-5f));
 }
+#endif
 
+#ifndef VAIR_SHELL_ALPHA_VIEW_THIN_87FAA269
+#define VAIR_SHELL_ALPHA_VIEW_THIN_87FAA269
 // Opacity of a layer along a slanted line of sight. Variant of vair_shell_alpha_view.
 //   alpha       opacity of the layer seen along the normal, at most 1/2; in [0, 0.5]
 //   n_dot_v     cosine between surface normal and viewer; its sign is ignored; in [-1, 1]
@@ -3463,7 +4026,10 @@ static inline float vair_shell_alpha_view_direct(float alpha, float n_dot_v) {
 static inline float vair_shell_alpha_view_thin(float alpha, float n_dot_v) {
     return vair_layered_alpha_thin(alpha, 1.0f / max(fabs(n_dot_v), 1e-5f));
 }
+#endif
 
+#ifndef VAIR_SHELL_HEIGHT_4ECFC581
+#define VAIR_SHELL_HEIGHT_4ECFC581
 // Height of a layer above the skin as a share of the coat's length.
 //   layer       index of the layer; 0 is the opaque base at the skin; in [0, 256]
 //   layers      number of layers, the base included; in [0, 256]
@@ -3481,7 +4047,10 @@ static inline float vair_shell_height(uint layer, uint layers) {
     float outer = layers > 1u ? 1.0f : 0.0f;
     return (layer >= top || layers <= 1u) ? outer : inner;
 }
+#endif
 
+#ifndef VAIR_SHELL_OFFSET_26DD207F
+#define VAIR_SHELL_OFFSET_26DD207F
 // Position of a vertex on the shell at a height above the skin, with combed and bent hairs.
 //   position     vertex on the skin, in scene units; in [-1000, 1000]
 //   n            surface normal; unit vector
@@ -3506,7 +4075,10 @@ static inline float3 vair_shell_offset(float3 position, float3 n, float coat_len
     float3 along = n + height * (comb + height * force);
     return position + coat_length * height * vair_safe_normalize(along, n);
 }
+#endif
 
+#ifndef VAIR_SHELL_OFFSET_DOT_256CCFA9
+#define VAIR_SHELL_OFFSET_DOT_256CCFA9
 // Position of a vertex on the shell at a height above the skin, with hairs of ordinary bends.
 // Variant of vair_shell_offset.
 //   position     vertex on the skin, in scene units; in [-1000, 1000]
@@ -3529,7 +4101,10 @@ static inline float3 vair_shell_offset_dot(float3 position, float3 n, float coat
     float3 along = n + height * (comb + height * force);
     return position + coat_length * height * vair_safe_normalize_dot(along, n);
 }
+#endif
 
+#ifndef VAIR_SHELL_OFFSET_NONZERO_464EC953
+#define VAIR_SHELL_OFFSET_NONZERO_464EC953
 // Position of a vertex on the shell at a height above the skin, with hairs that keep a direction.
 // Variant of vair_shell_offset.
 //   position     vertex on the skin, in scene units; in [-1000, 1000]
@@ -3552,7 +4127,10 @@ static inline float3 vair_shell_offset_nonzero(float3 position, float3 n, float 
     float3 along = n + height * (comb + height * force);
     return position + coat_length * height * vair_safe_normalize_nonzero(along, n);
 }
+#endif
 
+#ifndef VAIR_SHELL_SINE_POWER_CB079AB2
+#define VAIR_SHELL_SINE_POWER_CB079AB2
 // Power sin(n, w)^p, accurate at every angle and for every exponent.
 //   n           hair direction; unit vector
 //   w           direction to the light, or half vector; unit vector
@@ -3574,7 +4152,10 @@ static inline float vair_shell_sine_power(float3 n, float3 w, float p) {
     float power = exp(max(0.5f * p * log_square, -80.0f));
     return (sine_square > 0.0f || p <= 0.0f) ? power : 0.0f;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_7F5FF170
+#define VAIR_SHELL_SHADE_7F5FF170
 // Reflectance of a shell by hairs that stand along the surface normal.
 //   n           surface normal, which is the hair direction; unit vector
 //   l           direction to the light; unit vector
@@ -3596,7 +4177,10 @@ static inline float3 vair_shell_shade(float3 n, float3 l, float3 h, float3 k_dif
     return k_diffuse * vair_shell_sine_power(n, l, p_diffuse) + k_specular
         * vair_shell_sine_power(n, h, p_specular);
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_COSINE_A3B17FF4
+#define VAIR_SHELL_SHADE_COSINE_A3B17FF4
 // Reflectance of a shell from two cosines, for exponents of 2 and more. Variant of
 // vair_shell_shade.
 //   n           surface normal, which is the hair direction; unit vector
@@ -3622,7 +4206,10 @@ static inline float3 vair_shell_shade_cosine(float3 n, float3 l, float3 h, float
     float specular = vair_pow_one_minus(cos_h * cos_h, 0.5f * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_FROM4_978AD293
+#define VAIR_SHELL_SHADE_FROM4_978AD293
 // Reflectance of a shell from two cosines, for exponents of 8 and more, without logarithms. Variant
 // of vair_shell_shade.
 //   n           surface normal, which is the hair direction; unit vector
@@ -3645,7 +4232,10 @@ static inline float3 vair_shell_shade_from4(float3 n, float3 l, float3 h, float3
     float specular = vair_pow_one_minus_from4(cos_h * cos_h, 0.5f * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_CUBIC8_6FE278CE
+#define VAIR_SHELL_SHADE_CUBIC8_6FE278CE
 // Reflectance of a shell from two cosines, for exponents of 16 and more, by polynomials. Variant of
 // vair_shell_shade.
 //   n           surface normal, which is the hair direction; unit vector
@@ -3668,7 +4258,10 @@ static inline float3 vair_shell_shade_cubic8(float3 n, float3 l, float3 h, float
     float specular = vair_pow_one_minus_cubic8(cos_h * cos_h, 0.5f * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADE_PRINTED_FF1B6E96
+#define VAIR_SHELL_SHADE_PRINTED_FF1B6E96
 // Reflectance of a shell as the lecture prints it, with 1 - cos^(p/2) for (1 - cos^2)^(p/2). As the
 // lecture prints it; right: vair_shell_shade.
 //   n           surface normal; unit vector
@@ -3690,7 +4283,10 @@ static inline float3 vair_shell_shade_printed(float3 n, float3 l, float3 h, floa
     float specular = 1.0f - vair_safe_pow(clamp(dot(n, h), -1.0f, 1.0f), 0.5f * p_specular);
     return k_diffuse * diffuse + k_specular * specular;
 }
+#endif
 
+#ifndef VAIR_SHELL_SHADOW_56987310
+#define VAIR_SHELL_SHADOW_56987310
 // Share of the light that reaches a shell through the fur above it.
 //   height      height of the shell, 0 at the skin and 1 at the top, see vair_shell_height; in [0,
 //               1]
@@ -3706,7 +4302,10 @@ static inline float3 vair_shell_shade_printed(float3 n, float3 l, float3 h, floa
 static inline float vair_shell_shadow(float height, float s_min) {
     return s_min * (1.0f - height) + height;
 }
+#endif
 
+#ifndef VAIR_PCG3D_0701D396
+#define VAIR_PCG3D_0701D396
 // Hash of three integers to three, each of which depends on all; a bijection.
 //   x           any three numbers, for instance a cell and a seed; finite
 //   returns     three times 32 well-mixed bits (the upper ones are better); (1, 2, 3) gives
@@ -3730,7 +4329,10 @@ static inline uint3 vair_pcg3d(uint3 x) {
     uint c3 = c2 + a3 * b3;
     return (uint3)(a3, b3, c3);
 }
+#endif
 
+#ifndef VAIR_SHELL_STRAND_MASK_766BBE04
+#define VAIR_SHELL_STRAND_MASK_766BBE04
 // Coverage of a shell texel by one conical hair per cell of a square grid, bit-exact on every
 // target.
 //   uv          texture coordinates, in [-1024, 1024]; cut to multiples of 2^-20
@@ -3771,7 +4373,10 @@ static inline float vair_shell_strand_mask(float2 uv, float height, float densit
     uint from_top = ((along >> 5u) & 32767u) - (base + (((random.y >> 17u) * room) >> 15u));
     return from_left * from_left + from_top * from_top < radius * radius ? 1.0f : 0.0f;
 }
+#endif
 
+#ifndef VAIR_WRAPPED_SUM_3E908F24
+#define VAIR_WRAPPED_SUM_3E908F24
 // Sum modulo 1 of two numbers in [0, 1).
 //   a        multiple of 2^-24 for an exact result; in [0, 0.99999994]
 //   b        multiple of 2^-24 for an exact result; in [0, 0.99999994]
@@ -3783,7 +4388,10 @@ static inline float vair_wrapped_sum(float a, float b) {
     float d = a + (b - 1.0f);
     return min(d < 0.0f ? d + 1.0f : d, 0.99999994f);
 }
+#endif
 
+#ifndef VAIR_CRANLEY_PATTERSON_83330C6B
+#define VAIR_CRANLEY_PATTERSON_83330C6B
 // Rotation of a point on the unit torus: the same point set, decorrelated from pixel to pixel.
 //   u           point in [0, 1)^2
 //   shift       displacement in [0, 1)^2, for instance from a hash of the pixel
@@ -3798,7 +4406,10 @@ static inline float vair_wrapped_sum(float a, float b) {
 static inline float2 vair_cranley_patterson(float2 u, float2 shift) {
     return (float2)(vair_wrapped_sum(u.x, shift.x), vair_wrapped_sum(u.y, shift.y));
 }
+#endif
 
+#ifndef VAIR_EIGHTH_TURN_D4C988F9
+#define VAIR_EIGHTH_TURN_D4C988F9
 // Point on the unit circle up to 45 degrees on either side of the x axis.
 //   y        angle in units of pi / 4, in [-1, 1]
 //   returns  (cos(pi y / 4), sin(pi y / 4))
@@ -3812,7 +4423,10 @@ static inline float2 vair_eighth_turn(float y) {
         * (0.015854327f + s * (-0.00032594008f + s * 3.530338e-6f)));
     return (float2)(cosine, sine);
 }
+#endif
 
+#ifndef VAIR_DISK_CONCENTRIC_B0040F75
+#define VAIR_DISK_CONCENTRIC_B0040F75
 // Uniform point in the unit disc; concentric squares become concentric circles.
 //   u           pair of uniform numbers in [0, 1); in [0, 1]
 //   returns     point of length max(|2 u.x - 1|, |2 u.y - 1|), at most 1 up to rounding
@@ -3833,7 +4447,10 @@ static inline float2 vair_disk_concentric(float2 u) {
     float2 p = (float2)(larger * direction.x, radius * direction.y);
     return along_x ? p : p.yx;
 }
+#endif
 
+#ifndef VAIR_UNIT_FLOAT_3AD16058
+#define VAIR_UNIT_FLOAT_3AD16058
 // Number in [0, 1) from the upper 24 of 32 bits.
 //   bits        uniform bits, for instance of vair_pcg_hash or vair_radical_inverse_base2; finite
 //   returns     (bits >> 8) 2^-24, a multiple of 2^-24, at most 1 - 2^-24
@@ -3844,7 +4461,10 @@ static inline float2 vair_disk_concentric(float2 u) {
 static inline float vair_unit_float(uint bits) {
     return (float)(bits >> 8u) * 5.9604645e-8f;
 }
+#endif
 
+#ifndef VAIR_RADICAL_INVERSE_BASE2_47E9A31E
+#define VAIR_RADICAL_INVERSE_BASE2_47E9A31E
 // Radical inverse of an index in base 2: its 32 bits in reverse order.
 //   i           index of the point; finite
 //   returns     the reversed bits; read as a 32-bit fraction they are the van der Corput sequence,
@@ -3861,7 +4481,10 @@ static inline uint vair_radical_inverse_base2(uint i) {
     uint words = ((octets & 16711935u) << 8u) | ((octets >> 8u) & 16711935u);
     return (words << 16u) | (words >> 16u);
 }
+#endif
 
+#ifndef VAIR_HAMMERSLEY_E23441F2
+#define VAIR_HAMMERSLEY_E23441F2
 // Point i of n of the Hammersley set in the unit square, bit-exact on every target.
 //   i           index of the point, 0 <= i < n; in [0, 1048575]
 //   n           number of points, at most 2^20; in [1, 1048576]
@@ -3888,7 +4511,10 @@ static inline float2 vair_hammersley(uint i, uint n) {
     return (float2)((float)((int)quotient) * 5.9604645e-8f,
         vair_unit_float(vair_radical_inverse_base2(i)));
 }
+#endif
 
+#ifndef VAIR_HEMISPHERE_COSINE_750B1521
+#define VAIR_HEMISPHERE_COSINE_750B1521
 // Direction of the upper hemisphere with density cos / pi.
 //   u           pair of uniform numbers in [0, 1); in [0, 1]
 //   returns     unit vector with z >= 0; the boundary of the square goes to the horizon
@@ -3904,7 +4530,10 @@ static inline float3 vair_hemisphere_cosine(float2 u) {
     float rim = 2.0f * max(min(min(u.x, opposite.x), min(u.y, opposite.y)), 0.0f);
     return (float3)(vair_disk_concentric(u), sqrt(rim * (2.0f - rim)));
 }
+#endif
 
+#ifndef VAIR_PCG_HASH_B98B18DA
+#define VAIR_PCG_HASH_B98B18DA
 // Hash of an integer: one step of the PCG generator and its permutation (RXS-M-XS 32), a bijection.
 //   x           any number; finite
 //   returns     32 well-mixed bits; 0 gives 07bb2fe2, 1 gives a8beea3c
@@ -3917,7 +4546,10 @@ static inline uint vair_pcg_hash(uint x) {
     uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return (word >> 22u) ^ word;
 }
+#endif
 
+#ifndef VAIR_R2_SEQUENCE_BF366190
+#define VAIR_R2_SEQUENCE_BF366190
 // Point i of the R2 sequence in the unit square, bit-exact on every target.
 //   i           index of the point; the sequence needs no length and starts at (0, 0); finite
 //   returns     both fractional parts of i / g and i / g^2, as multiples of 2^-24 in [0, 1)
@@ -3929,7 +4561,10 @@ static inline uint vair_pcg_hash(uint x) {
 static inline float2 vair_r2_sequence(uint i) {
     return (float2)(vair_unit_float(i * 3242174889u), vair_unit_float(i * 2447445413u));
 }
+#endif
 
+#ifndef VAIR_UNIT_CIRCLE_8EEC6CDD
+#define VAIR_UNIT_CIRCLE_8EEC6CDD
 // Point on the unit circle at a share of a full turn from the x axis.
 //   turns    angle as a share of a full turn, in [0, 1]
 //   returns  (cos(2 pi turns), sin(2 pi turns)); exact at quarter turns
@@ -3943,7 +4578,10 @@ static inline float2 vair_unit_circle(float turns) {
     float2 swapped = (nearest == 1.0f || nearest == 3.0f) ? (float2)(-p.y, p.x) : p;
     return (nearest == 2.0f || nearest == 3.0f) ? -swapped : swapped;
 }
+#endif
 
+#ifndef VAIR_SPHERE_UNIFORM_959DADD2
+#define VAIR_SPHERE_UNIFORM_959DADD2
 // Uniform direction on the unit sphere.
 //   u           pair of uniform numbers in [0, 1); in [0, 1]
 //   returns     unit vector with z = 1 - 2 u.x and azimuth 2 pi u.y; u.x = 0 is the pole z = 1
@@ -3955,7 +4593,10 @@ static inline float3 vair_sphere_uniform(float2 u) {
     float radius = 2.0f * sqrt(max(u.x * (1.0f - u.x), 0.0f));
     return (float3)(radius * vair_unit_circle(u.y), 1.0f - 2.0f * u.x);
 }
+#endif
 
+#ifndef VAIR_HALF_SUM_F92D2212
+#define VAIR_HALF_SUM_F92D2212
 // The half vector of two directions times |l + v|, accurate even for l close to -v.
 //   l        direction to the light; unit vector
 //   v        direction to the viewer; unit vector
@@ -3971,7 +4612,10 @@ static inline float3 vair_half_sum(float3 l, float3 v) {
     float3 g = l + v;
     return g - 0.25f * (g.x * d.x + g.y * d.y + g.z * d.z) * d;
 }
+#endif
 
+#ifndef VAIR_LOG_COSINE_SQUARED_0C8E5BD4
+#define VAIR_LOG_COSINE_SQUARED_0C8E5BD4
 // Natural logarithm of a squared cosine, with flat relative error as the cosine tends to 1 and to
 // 0.
 //   sine_squared    1 - c^2, computed directly; in [0, 1]
@@ -3987,7 +4631,10 @@ static inline float vair_log_cosine_squared(float sine_squared, float cosine_squ
     float log_far = log(max(cosine_squared, 1.2e-38f));
     return sine_squared < 0.5f ? log_near : log_far;
 }
+#endif
 
+#ifndef VAIR_COSINE_POWER_260C27F7
+#define VAIR_COSINE_POWER_260C27F7
 // Power c^exponent of a cosine c >= 0, accurate as c -> 1 and as c -> 0.
 //   sine_squared    1 - c^2, computed directly; in [0, 1]
 //   cosine_squared  c^2, computed directly; in [0, 1]
@@ -4001,7 +4648,10 @@ static inline float vair_cosine_power(float sine_squared, float cosine_squared, 
     float log_power = 0.5f * exponent * vair_log_cosine_squared(sine_squared, cosine_squared);
     return exp(clamp(log_power, -80.0f, 0.0f));
 }
+#endif
 
+#ifndef VAIR_HALF_COSINE_POWER_584C65D2
+#define VAIR_HALF_COSINE_POWER_584C65D2
 // Power |h.z|^exponent of the half vector h = g / |g|.
 //   g         vair_half_sum of l and v; in [-2, 2]
 //   exponent  exponent, in [0, 1e5]
@@ -4015,7 +4665,10 @@ static inline float vair_half_cosine_power(float3 g, float exponent) {
     float k = 1.0f / max(planar + upright, 1e-37f);
     return vair_cosine_power(planar * k, upright * k, exponent);
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_POWER_9C4020C3
+#define VAIR_ASHIKHMIN_SHIRLEY_POWER_9C4020C3
 // Density of half vectors per steradian.
 //   g           vair_half_sum of l and v; in [-2, 2]
 //   exponent_x  sharpness across the tangent direction; in [0, 100000]
@@ -4032,7 +4685,10 @@ static inline float vair_ashikhmin_shirley_power(float3 g, float exponent_x, flo
     float scale = sqrt((exponent_x + 1.0f) * (exponent_y + 1.0f)) * 0.15915494f;
     return scale * vair_half_cosine_power(g, exponent);
 }
+#endif
 
+#ifndef VAIR_HALF_JACOBIAN_C78863FC
+#define VAIR_HALF_JACOBIAN_C78863FC
 // Half vectors per steradian of light directions: 1 / (4 |v.h|) for l mirrored about h.
 //   g           vair_half_sum of l and v; in [-2, 2]
 //   returns     1 / (2 |g|)
@@ -4044,7 +4700,10 @@ static inline float vair_half_jacobian(float3 g) {
     float square = dot(g, g);
     return square > 1e-37f ? 0.5f * rsqrt(max(square, 1e-37f)) : 0.0f;
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_PDF_3DAD5215
+#define VAIR_ASHIKHMIN_SHIRLEY_PDF_3DAD5215
 // Density with which vair_ashikhmin_shirley_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4069,7 +4728,10 @@ static inline float vair_ashikhmin_shirley_pdf(float3 l, float3 v, float exponen
     float3 g = vair_half_sum(l, v);
     return vair_ashikhmin_shirley_power(g, exponent_x, exponent_y) * vair_half_jacobian(g);
 }
+#endif
 
+#ifndef VAIR_POWER_DEFECT_33026F4D
+#define VAIR_POWER_DEFECT_33026F4D
 // Defect q = 1 - cos of the angle that a uniform number selects from the density cos^(exponent -
 // 1).
 //   u         uniform number in [0, 1); 0 is the peak
@@ -4081,7 +4743,10 @@ static inline float vair_ashikhmin_shirley_pdf(float3 l, float3 v, float exponen
 static inline float vair_power_defect(float u, float exponent) {
     return vair_one_minus_exp_neg(-vair_log_one_minus(u) / exponent);
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_SAMPLE_49824B5D
+#define VAIR_ASHIKHMIN_SHIRLEY_SAMPLE_49824B5D
 // Direction to the light, drawn with density vair_ashikhmin_shirley_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4108,7 +4773,10 @@ static inline float3 vair_ashikhmin_shirley_sample(float2 u, float3 v, float exp
     float k = sqrt(max(q * (2.0f - q), 0.0f)) * rsqrt(d);
     return normalize(vair_mirror(v, (float3)(k * x, k * y, 1.0f - q)));
 }
+#endif
 
+#ifndef VAIR_ASHIKHMIN_SHIRLEY_VALUE_FA40DBA5
+#define VAIR_ASHIKHMIN_SHIRLEY_VALUE_FA40DBA5
 // Reflectance of the Ashikhmin-Shirley highlight per steradian, without the cosine, Fresnel factor
 // 1.
 //   l           direction to the light, in the local frame; unit vector
@@ -4130,7 +4798,10 @@ static inline float vair_ashikhmin_shirley_value(float3 l, float3 v, float expon
     float value = 0.5f * lobe / max(length(g) * max(l.z, v.z), 1e-20f);
     return (l.z > 0.0f && v.z > 0.0f) ? value : 0.0f;
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_PDF_0100C936
+#define VAIR_BLINN_PHONG_PDF_0100C936
 // Density with which vair_blinn_phong_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4154,7 +4825,10 @@ static inline float vair_blinn_phong_pdf(float3 l, float3 v, float exponent) {
     return (exponent + 1.0f) * 0.15915494f * vair_half_cosine_power(g, exponent)
         * vair_half_jacobian(g);
 }
+#endif
 
+#ifndef VAIR_AROUND_AXIS_68AB7F5F
+#define VAIR_AROUND_AXIS_68AB7F5F
 // Unit vector at a given defect from the z axis.
 //   q        defect 1 - cos of the angle to the z axis; in [0, 2]
 //   turns    azimuth as a share of a full turn from the x axis; in [0, 1]
@@ -4164,7 +4838,10 @@ static inline float vair_blinn_phong_pdf(float3 l, float3 v, float exponent) {
 static inline float3 vair_around_axis(float q, float turns) {
     return (float3)(sqrt(max(q * (2.0f - q), 0.0f)) * vair_unit_circle(turns), 1.0f - q);
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_SAMPLE_55476DAA
+#define VAIR_BLINN_PHONG_SAMPLE_55476DAA
 // Direction to the light, drawn with density vair_blinn_phong_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4179,7 +4856,10 @@ static inline float3 vair_blinn_phong_sample(float2 u, float3 v, float exponent)
     float3 h = vair_around_axis(vair_power_defect(u.x, exponent + 1.0f), u.y);
     return normalize(vair_mirror(v, h));
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_SCALE_07FF8C6E
+#define VAIR_BLINN_PHONG_SCALE_07FF8C6E
 // Height of the Blinn-Phong lobe that gives it albedo 1 at normal incidence.
 //   exponent  p, sharpness of the lobe; in [0, 100000]
 //   returns   (p + 2) (p + 4) / (8 pi (2^(-p/2) + p)); 1 / pi at p = 0
@@ -4189,7 +4869,10 @@ static inline float vair_blinn_phong_scale(float exponent) {
     float falloff = exp(max(-0.3465736f * exponent, -80.0f));
     return 0.039788734f * (exponent + 2.0f) * ((exponent + 4.0f) / (falloff + exponent));
 }
+#endif
 
+#ifndef VAIR_BLINN_PHONG_VALUE_02AA38B2
+#define VAIR_BLINN_PHONG_VALUE_02AA38B2
 // Reflectance of the Blinn-Phong lobe per steradian, without the cosine, Fresnel factor 1.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4206,7 +4889,10 @@ static inline float vair_blinn_phong_value(float3 l, float3 v, float exponent) {
         * vair_half_cosine_power(vair_half_sum(l, v), exponent);
     return (l.z > 0.0f && v.z > 0.0f) ? value : 0.0f;
 }
+#endif
 
+#ifndef VAIR_GGX_DISTRIBUTION_09984AA1
+#define VAIR_GGX_DISTRIBUTION_09984AA1
 // Density D(h) of microfacet normals, area per projected area and steradian.
 //   g           vair_half_sum of l and v; h = g / |g|; in [-2, 2]
 //   alpha_x     width along the tangent; in [0.0001, 1]
@@ -4223,7 +4909,10 @@ static inline float vair_ggx_distribution(float3 g, float alpha_x, float alpha_y
     float ratio = min(dot(g, g) / max(x * x + y * y + g.z * g.z, 1e-37f), 1.0f);
     return 0.31830987f / (alpha_x * alpha_y) * (ratio * ratio);
 }
+#endif
 
+#ifndef VAIR_GGX_STRETCH_A64E4ADC
+#define VAIR_GGX_STRETCH_A64E4ADC
 // Length of (alpha_x w.x, alpha_y w.y, w.z), from which all masking terms follow.
 //   w        direction, in the local frame; unit vector
 //   alpha_x  width along the tangent; in [0.0001, 1]
@@ -4235,7 +4924,10 @@ static inline float vair_ggx_distribution(float3 g, float alpha_x, float alpha_y
 static inline float vair_ggx_stretch(float3 w, float alpha_x, float alpha_y) {
     return length((float3)(alpha_x * w.x, alpha_y * w.y, w.z));
 }
+#endif
 
+#ifndef VAIR_GGX_VISIBLE_AREA_5C03C153
+#define VAIR_GGX_VISIBLE_AREA_5C03C153
 // Twice the projected area of the facets that face a direction, per area of the surface.
 //   w        direction, in the local frame; also from below; unit vector
 //   alpha_x  width along the tangent; in [0.0001, 1]
@@ -4251,7 +4943,10 @@ static inline float vair_ggx_visible_area(float3 w, float alpha_x, float alpha_y
     float below = (x * x + y * y) / (s + max(-w.z, 0.0f));
     return max(w.z >= 0.0f ? w.z + s : below, 1e-20f);
 }
+#endif
 
+#ifndef VAIR_GGX_PDF_415B8406
+#define VAIR_GGX_PDF_415B8406
 // Density with which vair_ggx_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4274,7 +4969,10 @@ static inline float vair_ggx_pdf(float3 l, float3 v, float alpha_x, float alpha_
         / vair_ggx_visible_area(v, alpha_x, alpha_y);
     return g.z > 0.0f ? pdf : 0.0f;
 }
+#endif
 
+#ifndef VAIR_GGX_SAMPLE_B7BB5B9E
+#define VAIR_GGX_SAMPLE_B7BB5B9E
 // Direction to the light, drawn with density vair_ggx_pdf: v mirrored about a visible normal.
 //   u           pair of uniform numbers in [0, 1); u.y = 0 is the middle of the visible normals
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4308,7 +5006,10 @@ static inline float3 vair_ggx_sample(float2 u, float3 v, float alpha_x, float al
     float3 r = vair_mirror(v, h);
     return (1.5f - 0.5f * dot(r, r)) * r;
 }
+#endif
 
+#ifndef VAIR_GGX_VALUE_031AC988
+#define VAIR_GGX_VALUE_031AC988
 // Reflectance of the anisotropic GGX lobe per steradian, without the cosine, Fresnel factor 1.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4333,7 +5034,10 @@ static inline float vair_ggx_value(float3 l, float3 v, float alpha_x, float alph
         / max(mask, 1e-20f);
     return (l.z > 0.0f && v.z > 0.0f) ? value : 0.0f;
 }
+#endif
 
+#ifndef VAIR_LAMBERT_PDF_5D67B7A3
+#define VAIR_LAMBERT_PDF_5D67B7A3
 // Density with which vair_lambert_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; without influence; unit vector
@@ -4345,7 +5049,10 @@ static inline float vair_ggx_value(float3 l, float3 v, float alpha_x, float alph
 static inline float vair_lambert_pdf(float3 l, float3 v) {
     return 0.31830987f * max(l.z, 0.0f);
 }
+#endif
 
+#ifndef VAIR_LAMBERT_SAMPLE_75804BE7
+#define VAIR_LAMBERT_SAMPLE_75804BE7
 // Direction to the light, drawn with density vair_lambert_pdf.
 //   u           pair of uniform numbers in [0, 1)
 //   v           direction to the viewer, in the local frame; without influence; unit vector
@@ -4361,7 +5068,10 @@ static inline float3 vair_lambert_sample(float2 u, float3 v) {
     float3 w = vair_hemisphere_cosine(u);
     return w.z > 0.0f ? w : (float3)(0.0f, 0.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_LAMBERT_VALUE_B7339255
+#define VAIR_LAMBERT_VALUE_B7339255
 // Reflectance of a white Lambert surface per steradian, without the cosine.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4373,7 +5083,10 @@ static inline float3 vair_lambert_sample(float2 u, float3 v) {
 static inline float vair_lambert_value(float3 l, float3 v) {
     return (l.z > 0.0f && v.z > 0.0f) ? 0.31830987f : 0.0f;
 }
+#endif
 
+#ifndef VAIR_PHONG_POWER_892AAA52
+#define VAIR_PHONG_POWER_892AAA52
 // Power max(0, l.r)^exponent around the mirror direction r = (-v.x, -v.y, v.z).
 //   l         direction to the light, in the local frame; unit vector
 //   v         direction to the viewer, in the local frame; unit vector
@@ -4387,7 +5100,10 @@ static inline float vair_phong_power(float3 l, float3 v, float exponent) {
     float q = min(0.5f * dot(d, d), 2.0f);
     return q < 1.0f ? vair_pow_one_minus(q, exponent) : 0.0f;
 }
+#endif
 
+#ifndef VAIR_PHONG_PDF_17B2688E
+#define VAIR_PHONG_PDF_17B2688E
 // Density with which vair_phong_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4405,7 +5121,10 @@ static inline float vair_phong_power(float3 l, float3 v, float exponent) {
 static inline float vair_phong_pdf(float3 l, float3 v, float exponent) {
     return (exponent + 1.0f) * 0.15915494f * vair_phong_power(l, v, exponent);
 }
+#endif
 
+#ifndef VAIR_PHONG_SAMPLE_C16F590E
+#define VAIR_PHONG_SAMPLE_C16F590E
 // Direction to the light, drawn with density vair_phong_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4423,7 +5142,10 @@ static inline float3 vair_phong_sample(float2 u, float3 v, float exponent) {
     vair_Frame frame = vair_frame_from_normal((float3)(-v.x, -v.y, v.z));
     return normalize(vair_to_world(frame, vair_around_axis(q, u.y)));
 }
+#endif
 
+#ifndef VAIR_PHONG_VALUE_BB7DC35F
+#define VAIR_PHONG_VALUE_BB7DC35F
 // Reflectance of the modified Phong lobe per steradian, without the cosine, Fresnel factor 1.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4444,7 +5166,10 @@ static inline float vair_phong_value(float3 l, float3 v, float exponent) {
     float value = (exponent + 2.0f) * 0.15915494f * vair_phong_power(l, v, exponent);
     return (l.z > 0.0f && v.z > 0.0f) ? value : 0.0f;
 }
+#endif
 
+#ifndef VAIR_ARC_NORMAL_D2C3E60D
+#define VAIR_ARC_NORMAL_D2C3E60D
 // Cosine and sine of an angle in radians.
 //   xi       angle, in [-pi, pi]; in [-3.2, 3.2]
 //   returns  (cos(xi), sin(xi))
@@ -4455,7 +5180,10 @@ static inline float2 vair_arc_normal(float xi) {
     float2 p = vair_unit_circle(fabs(xi) * 0.15915494f);
     return (float2)(p.x, xi < 0.0f ? -p.y : p.y);
 }
+#endif
 
+#ifndef VAIR_SATIN_FACET_DENSITY_C6354D8F
+#define VAIR_SATIN_FACET_DENSITY_C6354D8F
 // Density per steradian of half vectors on a row of cylinders along x.
 //   g         vair_half_sum of l and v; h = g / |g|, turned up; in [-2, 2]
 //   spread    half angle of each arc, in radians; in [0.001, 1.57079637]
@@ -4479,7 +5207,10 @@ static inline float vair_satin_facet_density(float3 g, float spread, float expon
     float density = 0.125f * m * power * sqrt(quotient) / spread;
     return fabs(g.y) * edge.x < fabs(g.z) * edge.y ? density : 0.0f;
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_PDF_FACD5ACB
+#define VAIR_POULIN_FOURNIER_PDF_FACD5ACB
 // Density with which vair_poulin_fournier_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4500,7 +5231,10 @@ static inline float vair_poulin_fournier_pdf(float3 l, float3 v, float spread, f
     float facets = vair_satin_facet_density(g, spread, exponent) * vair_half_jacobian(g);
     return (1.0f - specular) * (0.31830987f * max(l.z, 0.0f)) + specular * facets;
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_SAMPLE_29A4D85A
+#define VAIR_POULIN_FOURNIER_SAMPLE_29A4D85A
 // Direction to the light, drawn with density vair_poulin_fournier_pdf.
 //   u           pair of uniform numbers in [0, 1); u.x < 1 - specular is the diffuse part
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4531,7 +5265,10 @@ static inline float3 vair_poulin_fournier_sample(float2 u, float3 v, float sprea
     float3 h = (float3)(y >= 0.0f ? s : -s, (1.0f - q) * n.y, (1.0f - q) * n.x);
     return u.x < diffuse_share ? diffuse : normalize(vair_mirror(v, h));
 }
+#endif
 
+#ifndef VAIR_SATIN_VISIBLE_AB291B8B
+#define VAIR_SATIN_VISIBLE_AB291B8B
 // Interval of the arc coordinate xi, the angle of the arc's normal from z, that a direction sees.
 //   w        direction above the surface, in the local frame; cylinders along x; unit vector
 //   spread   half angle of each arc, in radians; in [0.001, 1.57079637]
@@ -4555,7 +5292,10 @@ static inline float2 vair_satin_visible(float3 w, float spread, float2 edge) {
     float upper = psi < spread ? min(eta - psi, spread) : spread;
     return w.y < 0.0f ? (float2)(-upper, -lower) : (float2)(lower, upper);
 }
+#endif
 
+#ifndef VAIR_SATIN_HIGHLIGHT_RANGE_CB44BD5E
+#define VAIR_SATIN_HIGHLIGHT_RANGE_CB44BD5E
 // Middle and half width of the interval over which the highlight is integrated.
 //   g           vair_half_sum of l and v, with g.z > 0; in [-2, 2]
 //   visible     interval of the arc coordinate that l and v both see; in [-1.6, 1.6]
@@ -4574,7 +5314,10 @@ static inline float2 vair_satin_highlight_range(float3 g, float2 visible, float 
     float upper = min(visible.y, peak + reach);
     return (float2)(0.5f * (lower + upper), 0.5f * max(upper - lower, 0.0f));
 }
+#endif
 
+#ifndef VAIR_SATIN_NODE_D120B955
+#define VAIR_SATIN_NODE_D120B955
 // Integrand (N.l) (N.v) (N.h)^exponent at one point of the arc, N = (0, sin xi, cos xi).
 //   xi        arc coordinate, in radians; in [-1.6, 1.6]
 //   l         direction to the light, in the local frame; unit vector
@@ -4593,7 +5336,10 @@ static inline float vair_satin_node(float xi, float3 l, float3 v, float3 h, floa
     return facing * vair_cosine_power(min(h.x * h.x + across * across, 1.0f), upright * upright,
         exponent);
 }
+#endif
 
+#ifndef VAIR_SATIN_PAIR_7C87BFA4
+#define VAIR_SATIN_PAIR_7C87BFA4
 // Sum of vair_satin_node at two points of the arc.
 //   middle    arc coordinate halfway between the points, in radians; in [-1.6, 1.6]
 //   offset    distance of each from the middle; in [0, 1.6]
@@ -4609,7 +5355,10 @@ static inline float vair_satin_pair(float middle, float offset, float3 l, float3
     return vair_satin_node(middle - offset, l, v, h, exponent)
         + vair_satin_node(middle + offset, l, v, h, exponent);
 }
+#endif
 
+#ifndef VAIR_SATIN_HIGHLIGHT_B3C99351
+#define VAIR_SATIN_HIGHLIGHT_B3C99351
 // Integral of (N.l) (N.v) (N.h)^exponent over the arc that l and v both see, by 12 nodes.
 //   l         direction to the light, in the local frame; unit vector
 //   v         direction to the viewer, in the local frame; unit vector
@@ -4633,7 +5382,10 @@ static inline float vair_satin_highlight(float3 l, float3 v, float2 visible, flo
     total = total + 0.047175337f * vair_satin_pair(x, 0.98156065f * r, l, v, h, exponent);
     return r * total;
 }
+#endif
 
+#ifndef VAIR_SATIN_DIFFUSE_C36976F8
+#define VAIR_SATIN_DIFFUSE_C36976F8
 // Reflectance per steradian of white Lambert cylinders along x.
 //   l        direction to the light, in the local frame; unit vector
 //   v        direction to the viewer, in the local frame; unit vector
@@ -4659,7 +5411,10 @@ static inline float vair_satin_diffuse(float3 l, float3 v, float2 visible, float
     float total = 0.5f * (along * (x + sine) + across * difference);
     return 0.31830987f * max(total, 0.0f) / max(pitch * l.z * v.z, 1e-37f);
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_VALUE_8609FCD2
+#define VAIR_POULIN_FOURNIER_VALUE_8609FCD2
 // Reflectance of satin per steradian, without the cosine: parallel cylinders along x, one bounce.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4701,7 +5456,10 @@ static inline float vair_poulin_fournier_value(float3 l, float3 v, float spread,
         * highlight;
     return (l.z > 0.0f && v.z > 0.0f) ? value : 0.0f;
 }
+#endif
 
+#ifndef VAIR_SATIN_HIGHLIGHT_EIGHT_CDF76E25
+#define VAIR_SATIN_HIGHLIGHT_EIGHT_CDF76E25
 // Integral of (N.l) (N.v) (N.h)^exponent over the arc that l and v both see, by 8 nodes.
 //   l         direction to the light, in the local frame; unit vector
 //   v         direction to the viewer, in the local frame; unit vector
@@ -4723,7 +5481,10 @@ static inline float vair_satin_highlight_eight(float3 l, float3 v, float2 visibl
     total = total + 0.101228535f * vair_satin_pair(x, 0.96028984f * r, l, v, h, exponent);
     return r * total;
 }
+#endif
 
+#ifndef VAIR_POULIN_FOURNIER_VALUE_EIGHT_A4DFF34E
+#define VAIR_POULIN_FOURNIER_VALUE_EIGHT_A4DFF34E
 // Reflectance of satin per steradian with a coarser highlight: 8 nodes instead of 12. Variant of
 // vair_poulin_fournier_value.
 //   l           direction to the light, in the local frame; unit vector
@@ -4756,7 +5517,10 @@ static inline float vair_poulin_fournier_value_eight(float3 l, float3 v, float s
         * highlight;
     return (l.z > 0.0f && v.z > 0.0f) ? value : 0.0f;
 }
+#endif
 
+#ifndef VAIR_PUNCTUAL_RADIANCE_B150E4AD
+#define VAIR_PUNCTUAL_RADIANCE_B150E4AD
 // Radiance that a surface reflects from a point or directional light.
 //   brdf        reflectance of the surface per steradian, as the value functions of lobes return
 //               it; in [0, 100000000]
@@ -4772,7 +5536,10 @@ static inline float vair_poulin_fournier_value_eight(float3 l, float3 v, float s
 static inline float3 vair_punctual_radiance(float3 brdf, float3 light, float n_dot_l) {
     return 3.1415927f * max(n_dot_l, 0.0f) * (brdf * light);
 }
+#endif
 
+#ifndef VAIR_STRAND_LOBE_DEFECT_043FA970
+#define VAIR_STRAND_LOBE_DEFECT_043FA970
 // Defect 1 - cos(delta) of the angle delta by which l misses the cone of mirror directions around
 // x.
 //   l        direction to the light, in the local frame; unit vector
@@ -4787,7 +5554,10 @@ static inline float vair_strand_lobe_defect(float3 l, float3 v) {
     float along = l.x + v.x;
     return min(0.5f * (difference * difference + along * along), 2.0f);
 }
+#endif
 
+#ifndef VAIR_STRAND_MIXTURE_61443D48
+#define VAIR_STRAND_MIXTURE_61443D48
 // Shares of the two densities of delta that vair_strand_sample mixes.
 //   v         direction to the viewer, in the local frame; unit vector
 //   exponent  p, sharpness of the lobe; in [0, 100000]
@@ -4804,7 +5574,10 @@ static inline float2 vair_strand_mixture(float3 v, float exponent) {
     float k = 1.0f / (bell + lobe);
     return (float2)(lobe * k, bell * k);
 }
+#endif
 
+#ifndef VAIR_STRAND_PDF_BBBF75D3
+#define VAIR_STRAND_PDF_BBBF75D3
 // Density with which vair_strand_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4839,7 +5612,10 @@ static inline float vair_strand_pdf(float3 l, float3 v, float exponent) {
     float pdf = 0.15915494f * m * vair_pow_one_minus(q, exponent) * shape;
     return q < 0.99999994f ? pdf : 0.0f;
 }
+#endif
 
+#ifndef VAIR_STRAND_SAMPLE_4131B6DA
+#define VAIR_STRAND_SAMPLE_4131B6DA
 // Direction to the light, drawn with density vair_strand_pdf: near the cone of mirror directions
 // around x.
 //   u           pair of uniform numbers in [0, 1); u.x = 0 is on the cone
@@ -4879,7 +5655,10 @@ static inline float3 vair_strand_sample(float2 u, float3 v, float exponent) {
     return normalize((float3)(elevation, (take_raised ? raised : lowered)
         * vair_unit_circle(turns)));
 }
+#endif
 
+#ifndef VAIR_STRAND_VALUE_321614CB
+#define VAIR_STRAND_VALUE_321614CB
 // Highlight of a strand along x, on the whole sphere of l and v; not normalised.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4900,7 +5679,10 @@ static inline float vair_strand_value(float3 l, float3 v, float exponent) {
     float q = vair_strand_lobe_defect(l, v);
     return q < 1.0f ? vair_pow_one_minus(q, exponent) : 0.0f;
 }
+#endif
 
+#ifndef VAIR_WARD_PDF_ACED2E01
+#define VAIR_WARD_PDF_ACED2E01
 // Density with which vair_ward_sample draws l, per steradian.
 //   l           direction to the light, in the local frame; unit vector
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4929,7 +5711,10 @@ static inline float vair_ward_pdf(float3 l, float3 v, float alpha_x, float alpha
     float pdf = bell * (0.15915494f / (alpha_x * alpha_y)) / max(fabs(g.z), 1e-18f);
     return stretched < 80.0f * upright ? pdf : 0.0f;
 }
+#endif
 
+#ifndef VAIR_WARD_SAMPLE_840AE0F2
+#define VAIR_WARD_SAMPLE_840AE0F2
 // Direction to the light, drawn with density vair_ward_pdf.
 //   u           pair of uniform numbers in [0, 1); (0, 0) is the mirror direction of v
 //   v           direction to the viewer, in the local frame; unit vector
@@ -4949,7 +5734,10 @@ static inline float3 vair_ward_sample(float2 u, float3 v, float alpha_x, float a
     float3 h = normalize((float3)(alpha_x * radius * circle.x, alpha_y * radius * circle.y, 1.0f));
     return normalize(vair_mirror(v, h));
 }
+#endif
 
+#ifndef VAIR_WARD_VALUE_B12E47C1
+#define VAIR_WARD_VALUE_B12E47C1
 // Reflectance of the Ward lobe with bounded albedo per steradian, without the cosine, Fresnel
 // factor 1.
 //   l           direction to the light, in the local frame; unit vector
@@ -4981,7 +5769,10 @@ static inline float vair_ward_value(float3 l, float3 v, float alpha_x, float alp
     float value = bell * (0.31830987f / (alpha_x * alpha_y)) / max(planar + upright, 1e-20f);
     return (l.z > 0.0f && v.z > 0.0f && stretched < 80.0f * upright) ? value : 0.0f;
 }
+#endif
 
+#ifndef VAIR_CUBE_SOLID_ANGLE_6AF82327
+#define VAIR_CUBE_SOLID_ANGLE_6AF82327
 // Solid angle of the texel centred at a point of one face of a cube map.
 //   uv          texture coordinates of the texel's centre on its face; in [0, 1]
 //   size        texels along each side of the face; in [1, 65536]
@@ -4996,7 +5787,10 @@ static inline float vair_cube_solid_angle(float2 uv, float size) {
     float side = 2.0f / size;
     return side * side * (r * r * r);
 }
+#endif
 
+#ifndef VAIR_DUAL_PARABOLOID_DIRECTION_AB9C96B3
+#define VAIR_DUAL_PARABOLOID_DIRECTION_AB9C96B3
 // Direction of a point of a dual-paraboloid map; undoes vair_dual_paraboloid_uv.
 //   uv          texture coordinates; in [0, 1]
 //   back        above 1/2: the half around -z; otherwise the half around +z; in [0, 1]
@@ -5014,7 +5808,10 @@ static inline float3 vair_dual_paraboloid_direction(float2 uv, float back, float
     float z = (1.0f - square) * k;
     return (float3)(2.0f * k * s, back > 0.5f ? -z : z);
 }
+#endif
 
+#ifndef VAIR_DUAL_PARABOLOID_SOLID_ANGLE_74C80DB3
+#define VAIR_DUAL_PARABOLOID_SOLID_ANGLE_74C80DB3
 // Solid angle of the texel that a direction falls into, for choosing its mip level.
 //   z           component w.z of the direction looked up; in [-1, 1]
 //   width       texels of one half along u; in [1, 65536]
@@ -5034,7 +5831,10 @@ static inline float vair_dual_paraboloid_solid_angle(float z, float width, float
     float scale = 2.0f * border * depth;
     return scale / width * (scale / height);
 }
+#endif
 
+#ifndef VAIR_DUAL_PARABOLOID_UV_7DF7381B
+#define VAIR_DUAL_PARABOLOID_UV_7DF7381B
 // Place of a direction in a dual-paraboloid map: two discs, around +z and around -z.
 //   w           direction; unit vector
 //   border      half side of each square in units of the disc radius, at least 1; 1.2 leaves a rim
@@ -5051,7 +5851,10 @@ static inline vair_DualParaboloid vair_dual_paraboloid_uv(float3 w, float border
     float2 uv = clamp(k * w.xy + (float2)(0.5f), (float2)(0.0f), (float2)(1.0f));
     return (vair_DualParaboloid){uv, w.z < 0.0f ? 1.0f : 0.0f};
 }
+#endif
 
+#ifndef VAIR_LATLONG_UV_84AACAD4
+#define VAIR_LATLONG_UV_84AACAD4
 // Texture coordinates of a direction in a latitude-longitude map with y up.
 //   w           direction; unit vector
 //   returns     (1/2 + atan2(w.x, -w.z) / (2 pi), atan2(length(w.xz), w.y) / pi), in [0, 1]^2: v =
@@ -5067,7 +5870,10 @@ static inline float2 vair_latlong_uv(float3 w) {
     return (float2)(0.5f + vair_turn_of(w.x, -w.z), 2.0f
         * vair_turn_of(length((float2)(w.x, w.z)), w.y));
 }
+#endif
 
+#ifndef VAIR_ENVIRONMENT_LATLONG_09F439E4
+#define VAIR_ENVIRONMENT_LATLONG_09F439E4
 // Light that comes from a direction, from a latitude-longitude map with its levels.
 //   environment  the map, linear RGB, in the layout of vair_latlong_uv; linear filter within and
 //                between levels; repeat in u, clamp in v
@@ -5087,7 +5893,10 @@ static inline float3 vair_environment_latlong(image2d_t environment, sampler_t e
     return vair_lookup_level(environment, environment_sampler, environment_layout,
         vair_latlong_uv(w), lod).xyz;
 }
+#endif
 
+#ifndef VAIR_LATLONG_DIRECTION_42749A1D
+#define VAIR_LATLONG_DIRECTION_42749A1D
 // Direction of a point of a latitude-longitude map with y up; undoes vair_latlong_uv.
 //   uv          texture coordinates: v from the top, u = 1/2 toward -z and growing toward +x; in
 //               [0, 1]
@@ -5102,7 +5911,10 @@ static inline float3 vair_latlong_direction(float2 uv) {
     float2 azimuth = vair_unit_circle(uv.x);
     return (float3)(-polar.y * azimuth.y, polar.x, polar.y * azimuth.x);
 }
+#endif
 
+#ifndef VAIR_LATLONG_SOLID_ANGLE_B7EC651E
+#define VAIR_LATLONG_SOLID_ANGLE_B7EC651E
 // Solid angle of the texel centred at height v of a latitude-longitude map.
 //   v           texture coordinate of the texel's centre, from the top; in [0, 1]
 //   width       texels along u; in [1, 65536]
@@ -5119,7 +5931,10 @@ static inline float3 vair_latlong_direction(float2 uv) {
 static inline float vair_latlong_solid_angle(float v, float width, float height) {
     return 12.566371f / width * vair_unit_circle(0.5f * v).y * vair_unit_circle(0.25f / height).y;
 }
+#endif
 
+#ifndef VAIR_LOD_FROM_PDF_4B82F18C
+#define VAIR_LOD_FROM_PDF_4B82F18C
 // Mip level whose texels cover as much as one sample stands for.
 //   pdf                density of the sample per steradian; in [0, 1e20]
 //   samples            number of samples drawn; in [1, 1000000]
@@ -5139,7 +5954,10 @@ static inline float vair_lod_from_pdf(float pdf, float samples, float texel_soli
     float ratio = samples * pdf * texel_solid_angle;
     return max(lod_bias - 0.5f * log2(max(ratio, 1e-30f)), 0.0f);
 }
+#endif
 
+#ifndef VAIR_MIS_BALANCE_142010BB
+#define VAIR_MIS_BALANCE_142010BB
 // Weight of a sample of technique a when techniques a and b are combined, by the balance heuristic.
 //   samples_a   samples drawn by technique a; in [1, 1000000]
 //   pdf_a       density of technique a at the sample, per steradian; in [0, 1e20]
@@ -5160,7 +5978,10 @@ static inline float vair_mis_balance(float samples_a, float pdf_a, float samples
     float b = samples_b * pdf_b;
     return a / max(a + b, 1.2e-38f);
 }
+#endif
 
+#ifndef VAIR_MIS_POWER_C18FC121
+#define VAIR_MIS_POWER_C18FC121
 // Weight of a sample of technique a when techniques a and b are combined, by the power heuristic.
 //   samples_a   samples drawn by technique a; in [1, 1000000]
 //   pdf_a       density of technique a at the sample, per steradian; in [0, 1e20]
@@ -5182,7 +6003,10 @@ static inline float vair_mis_power(float samples_a, float pdf_a, float samples_b
     float square_a = share_a * share_a;
     return square_a / max(square_a + share_b * share_b, 1.2e-38f);
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_FOLD_79835E80
+#define VAIR_OCTAHEDRAL_FOLD_79835E80
 // Move both coordinates away from 0 by an amount.
 //   p        point of the octahedral square, or w.xy; in [-1, 1]
 //   amount   distance, negative toward 0; in [-1, 1]
@@ -5192,7 +6016,10 @@ static inline float vair_mis_power(float samples_a, float pdf_a, float samples_b
 static inline float2 vair_octahedral_fold(float2 p, float amount) {
     return p + (float2)(p.x >= 0.0f ? amount : -amount, p.y >= 0.0f ? amount : -amount);
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_DECODE_97D01881
+#define VAIR_OCTAHEDRAL_DECODE_97D01881
 // Direction of a point of an octahedral map; undoes vair_octahedral_encode.
 //   uv          texture coordinates; opposite points of an edge of the square mean one direction;
 //               in [0, 1]
@@ -5209,7 +6036,10 @@ static inline float3 vair_octahedral_decode(float2 uv) {
     float z = 1.0f - fabs(p.x) - fabs(p.y);
     return normalize((float3)(vair_octahedral_fold(p, -max(-z, 0.0f)), z));
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_ENCODE_9F34F28C
+#define VAIR_OCTAHEDRAL_ENCODE_9F34F28C
 // Texture coordinates of a direction in an octahedral map.
 //   w           direction; unit vector
 //   returns     point of [0, 1]^2; w = (0, 0, 1) is the centre, (0, 0, -1) the corner (1, 1)
@@ -5226,7 +6056,10 @@ static inline float2 vair_octahedral_encode(float3 w) {
     float k = 0.5f / (fabs(w.x) + fabs(w.y) + fabs(w.z));
     return clamp(k * p + (float2)(0.5f), (float2)(0.0f), (float2)(1.0f));
 }
+#endif
 
+#ifndef VAIR_OCTAHEDRAL_SOLID_ANGLE_455352E8
+#define VAIR_OCTAHEDRAL_SOLID_ANGLE_455352E8
 // Solid angle of the texel centred at a point of an octahedral map.
 //   uv          texture coordinates of the texel's centre; in [0, 1]
 //   size        texels along each side; in [1, 65536]
@@ -5245,7 +6078,10 @@ static inline float vair_octahedral_solid_angle(float2 uv, float size) {
     float side = 2.0f / size;
     return side * side * (r * r * r);
 }
+#endif
 
+#ifndef VAIR_PARABOLIC_DIRECTION_7020B178
+#define VAIR_PARABOLIC_DIRECTION_7020B178
 // Direction of a point of a paraboloid map around +z; undoes vair_parabolic_uv.
 //   uv          texture coordinates; points outside the disc of radius 1/2 around (1/2, 1/2) look
 //               down; in [-1000, 1000]
@@ -5260,7 +6096,10 @@ static inline float3 vair_parabolic_direction(float2 uv) {
     float k = 1.0f / (1.0f + square);
     return (float3)(2.0f * k * s, (1.0f - square) * k);
 }
+#endif
 
+#ifndef VAIR_PARABOLIC_UV_AAA97E26
+#define VAIR_PARABOLIC_UV_AAA97E26
 // Texture coordinates of a direction in a paraboloid map around +z.
 //   w           direction; unit vector
 //   returns     w.xy / (2 (1 + w.z)) + 1/2; the half w.z >= 0 fills the disc around (1/2, 1/2) of
@@ -5277,7 +6116,10 @@ static inline float2 vair_parabolic_uv(float3 w) {
     float depth = w.z >= 0.0f ? 1.0f + w.z : below;
     return 0.5f / max(depth, 1e-6f) * w.xy + (float2)(0.5f);
 }
+#endif
 
+#ifndef VAIR_ENV_LOD_C3D71209
+#define VAIR_ENV_LOD_C3D71209
 // Level of a dual-paraboloid map whose texels are as large as what one sample stands for.
 //   env      the map; linear filter within and between levels; clamp in u, clamp in v
 //   w        direction of the sample; unit vector
@@ -5292,7 +6134,10 @@ static inline float vair_env_lod(image2d_t env, sampler_t env_sampler, int4 env_
     return vair_lod_from_pdf(pdf, samples, vair_dual_paraboloid_solid_angle(w.z, size, size, 1.2f),
         0.0f);
 }
+#endif
 
+#ifndef VAIR_ENV_DISC_A90F2C28
+#define VAIR_ENV_DISC_A90F2C28
 // Light at a place of one disc of a dual-paraboloid map, in one of its levels.
 //   env      the map; linear filter within and between levels; clamp in u, clamp in v
 //   disc     place in units of the disc radius; beyond 1 it lies in the border; in [-1.2, 1.2]
@@ -5312,7 +6157,10 @@ static inline float3 vair_env_disc(image2d_t env, sampler_t env_sampler, int4 en
     return vair_lookup_level(env, env_sampler, env_layout,
         (float2)(0.5f * (place.x + back), place.y), (float)mip).xyz;
 }
+#endif
 
+#ifndef VAIR_ENV_LEVEL_29626DA2
+#define VAIR_ENV_LEVEL_29626DA2
 // Light that comes from a direction, from one level of a dual-paraboloid map.
 //   env      the map; linear filter within and between levels; clamp in u, clamp in v
 //   w        direction that the light comes from; unit vector
@@ -5339,7 +6187,10 @@ static inline float3 vair_env_level(image2d_t env, sampler_t env_sampler, int4 e
     float share = 0.5f + 0.5f * height / reach;
     return share * own + (1.0f - share) * other;
 }
+#endif
 
+#ifndef VAIR_ENV_RADIANCE_077AB8B1
+#define VAIR_ENV_RADIANCE_077AB8B1
 // Light that comes from a direction, from a dual-paraboloid map with its levels, as `vair env`
 // writes it.
 //   env         2 n by n texels, n a power of two: the disc around +z left, the disc around -z
@@ -5365,7 +6216,10 @@ static inline float3 vair_env_radiance(image2d_t env, sampler_t env_sampler, int
     return (1.0f - share) * vair_env_level(env, env_sampler, env_layout, w, larger) + share
         * vair_env_level(env, env_sampler, env_layout, w, larger + 1u);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_ASHIKHMIN_SHIRLEY_12C40319
+#define VAIR_ENV_GRID_ASHIKHMIN_SHIRLEY_12C40319
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, from a fixed grid of
 // directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
@@ -5412,7 +6266,10 @@ static inline float3 vair_env_grid_ashikhmin_shirley(image2d_t env, sampler_t en
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_ASHIKHMIN_SHIRLEY_DBCC8597
+#define VAIR_ENV_MONTE_CARLO_ASHIKHMIN_SHIRLEY_DBCC8597
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5451,7 +6308,10 @@ static inline float3 vair_env_monte_carlo_ashikhmin_shirley(image2d_t env, sampl
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_ASHIKHMIN_SHIRLEY_81098A11
+#define VAIR_ENV_FILTERED_ASHIKHMIN_SHIRLEY_81098A11
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, by filtered importance
 // sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
@@ -5493,7 +6353,10 @@ static inline float3 vair_env_filtered_ashikhmin_shirley(image2d_t env, sampler_
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_ASHIKHMIN_SHIRLEY_9F0204C9
+#define VAIR_ENV_GUARDED_ASHIKHMIN_SHIRLEY_9F0204C9
 // Light that an Ashikhmin-Shirley lobe reflects from an environment map, filtered only where that
 // helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
@@ -5541,7 +6404,10 @@ static inline float3 vair_env_guarded_ashikhmin_shirley(image2d_t env, sampler_t
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_BLINN_PHONG_C65D61C5
+#define VAIR_ENV_GRID_BLINN_PHONG_C65D61C5
 // Light that a Blinn-Phong lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5585,7 +6451,10 @@ static inline float3 vair_env_grid_blinn_phong(image2d_t env, sampler_t env_samp
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_BLINN_PHONG_8FD417AA
+#define VAIR_ENV_MONTE_CARLO_BLINN_PHONG_8FD417AA
 // Light that a Blinn-Phong lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5621,7 +6490,10 @@ static inline float3 vair_env_monte_carlo_blinn_phong(image2d_t env, sampler_t e
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_BLINN_PHONG_CFFDEE8C
+#define VAIR_ENV_FILTERED_BLINN_PHONG_CFFDEE8C
 // Light that a Blinn-Phong lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5659,7 +6531,10 @@ static inline float3 vair_env_filtered_blinn_phong(image2d_t env, sampler_t env_
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_BLINN_PHONG_D0F3C332
+#define VAIR_ENV_GUARDED_BLINN_PHONG_D0F3C332
 // Light that a Blinn-Phong lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5703,7 +6578,10 @@ static inline float3 vair_env_guarded_blinn_phong(image2d_t env, sampler_t env_s
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_GGX_D52E95A0
+#define VAIR_ENV_GRID_GGX_D52E95A0
 // Light that a GGX lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5748,7 +6626,10 @@ static inline float3 vair_env_grid_ggx(image2d_t env, sampler_t env_sampler, int
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_GGX_965F5D0E
+#define VAIR_ENV_MONTE_CARLO_GGX_965F5D0E
 // Light that a GGX lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5785,7 +6666,10 @@ static inline float3 vair_env_monte_carlo_ggx(image2d_t env, sampler_t env_sampl
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_GGX_E84BD3FA
+#define VAIR_ENV_FILTERED_GGX_E84BD3FA
 // Light that a GGX lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5824,7 +6708,10 @@ static inline float3 vair_env_filtered_ggx(image2d_t env, sampler_t env_sampler,
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_GGX_0ADA9323
+#define VAIR_ENV_GUARDED_GGX_0ADA9323
 // Light that a GGX lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5869,7 +6756,10 @@ static inline float3 vair_env_guarded_ggx(image2d_t env, sampler_t env_sampler, 
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_LAMBERT_F8C601D7
+#define VAIR_ENV_GRID_LAMBERT_F8C601D7
 // Light that a Lambert lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5912,7 +6802,10 @@ static inline float3 vair_env_grid_lambert(image2d_t env, sampler_t env_sampler,
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_LAMBERT_D647889C
+#define VAIR_ENV_MONTE_CARLO_LAMBERT_D647889C
 // Light that a Lambert lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5947,7 +6840,10 @@ static inline float3 vair_env_monte_carlo_lambert(image2d_t env, sampler_t env_s
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_LAMBERT_13B84093
+#define VAIR_ENV_FILTERED_LAMBERT_13B84093
 // Light that a Lambert lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -5984,7 +6880,10 @@ static inline float3 vair_env_filtered_lambert(image2d_t env, sampler_t env_samp
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_LAMBERT_E13CA121
+#define VAIR_ENV_GUARDED_LAMBERT_E13CA121
 // Light that a Lambert lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6027,7 +6926,10 @@ static inline float3 vair_env_guarded_lambert(image2d_t env, sampler_t env_sampl
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_PHONG_6C875DFF
+#define VAIR_ENV_GRID_PHONG_6C875DFF
 // Light that a Phong lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6071,7 +6973,10 @@ static inline float3 vair_env_grid_phong(image2d_t env, sampler_t env_sampler, i
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_PHONG_28763CFB
+#define VAIR_ENV_MONTE_CARLO_PHONG_28763CFB
 // Light that a Phong lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6107,7 +7012,10 @@ static inline float3 vair_env_monte_carlo_phong(image2d_t env, sampler_t env_sam
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_PHONG_6DEED8C1
+#define VAIR_ENV_FILTERED_PHONG_6DEED8C1
 // Light that a Phong lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6145,7 +7053,10 @@ static inline float3 vair_env_filtered_phong(image2d_t env, sampler_t env_sample
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_PHONG_27F712C8
+#define VAIR_ENV_GUARDED_PHONG_27F712C8
 // Light that a Phong lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6189,7 +7100,10 @@ static inline float3 vair_env_guarded_phong(image2d_t env, sampler_t env_sampler
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_POULIN_FOURNIER_C0CA1046
+#define VAIR_ENV_GRID_POULIN_FOURNIER_C0CA1046
 // Light that satin reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6236,7 +7150,10 @@ static inline float3 vair_env_grid_poulin_fournier(image2d_t env, sampler_t env_
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_POULIN_FOURNIER_B11BBA71
+#define VAIR_ENV_MONTE_CARLO_POULIN_FOURNIER_B11BBA71
 // Light that satin reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6276,7 +7193,10 @@ static inline float3 vair_env_monte_carlo_poulin_fournier(image2d_t env, sampler
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_POULIN_FOURNIER_FAB5C4DA
+#define VAIR_ENV_FILTERED_POULIN_FOURNIER_FAB5C4DA
 // Light that satin reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6318,7 +7238,10 @@ static inline float3 vair_env_filtered_poulin_fournier(image2d_t env, sampler_t 
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_POULIN_FOURNIER_EBE44EDF
+#define VAIR_ENV_GUARDED_POULIN_FOURNIER_EBE44EDF
 // Light that satin reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6366,7 +7289,10 @@ static inline float3 vair_env_guarded_poulin_fournier(image2d_t env, sampler_t e
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_PREFILTERED_52B90406
+#define VAIR_ENV_PREFILTERED_52B90406
 // Light that a power of the cosine gathers about a direction, from a map convolved with that lobe.
 //   env         what `vair env --prefilter EXPONENT` writes for one exponent p, in the layout of
 //               vair_env_radiance. Only its largest level is read; it needs no others; linear
@@ -6387,7 +7313,10 @@ static inline float3 vair_env_prefiltered(image2d_t env, sampler_t env_sampler, 
     float3 w) {
     return vair_env_level(env, env_sampler, env_layout, w, 0u);
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_STRAND_5DD03BAE
+#define VAIR_ENV_GRID_STRAND_5DD03BAE
 // Light that a strand reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6431,7 +7360,10 @@ static inline float3 vair_env_grid_strand(image2d_t env, sampler_t env_sampler, 
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_STRAND_8A502B36
+#define VAIR_ENV_MONTE_CARLO_STRAND_8A502B36
 // Light that a strand reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6466,7 +7398,10 @@ static inline float3 vair_env_monte_carlo_strand(image2d_t env, sampler_t env_sa
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_STRAND_195521B7
+#define VAIR_ENV_FILTERED_STRAND_195521B7
 // Light that a strand reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6503,7 +7438,10 @@ static inline float3 vair_env_filtered_strand(image2d_t env, sampler_t env_sampl
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_STRAND_FBCB74C2
+#define VAIR_ENV_GUARDED_STRAND_FBCB74C2
 // Light that a strand reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6546,7 +7484,10 @@ static inline float3 vair_env_guarded_strand(image2d_t env, sampler_t env_sample
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GRID_WARD_94E58CBF
+#define VAIR_ENV_GRID_WARD_94E58CBF
 // Light that a Ward lobe reflects from an environment map, from a fixed grid of directions.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6591,7 +7532,10 @@ static inline float3 vair_env_grid_ward(image2d_t env, sampler_t env_sampler, in
     }
     return total;
 }
+#endif
 
+#ifndef VAIR_ENV_MONTE_CARLO_WARD_68DD3145
+#define VAIR_ENV_MONTE_CARLO_WARD_68DD3145
 // Light that a Ward lobe reflects from an environment map, by importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6629,7 +7573,10 @@ static inline float3 vair_env_monte_carlo_ward(image2d_t env, sampler_t env_samp
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_FILTERED_WARD_C5E62E37
+#define VAIR_ENV_FILTERED_WARD_C5E62E37
 // Light that a Ward lobe reflects from an environment map, by filtered importance sampling.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6668,7 +7615,10 @@ static inline float3 vair_env_filtered_ward(image2d_t env, sampler_t env_sampler
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_ENV_GUARDED_WARD_12681905
+#define VAIR_ENV_GUARDED_WARD_12681905
 // Light that a Ward lobe reflects from an environment map, filtered only where that helps.
 //   env         the map, as vair_env_radiance reads it; linear filter within and between levels;
 //               clamp in u, clamp in v
@@ -6713,7 +7663,10 @@ static inline float3 vair_env_guarded_ward(image2d_t env, sampler_t env_sampler,
     }
     return total / (float)count;
 }
+#endif
 
+#ifndef VAIR_FACTORED_SHADE_12245FC2
+#define VAIR_FACTORED_SHADE_12245FC2
 // Light from one direction that a factored reflectance sends to the viewer, for light of 1.
 //   p           factor of the directions to light and viewer, over vair_parabolic_uv; linear filter
 //               within and between levels; clamp in u, clamp in v
@@ -6741,7 +7694,10 @@ static inline float3 vair_factored_shade(image2d_t p, sampler_t p_sampler, int4 
         vair_parabolic_uv(vair_half_vector(l, v)), 0.0f).xyz;
     return max(l.z, 0.0f) * (scale * product);
 }
+#endif
 
+#ifndef VAIR_ANGLE_TABLE_LOOKUP_324634EC
+#define VAIR_ANGLE_TABLE_LOOKUP_324634EC
 // Bilinear lookup in a table whose ends are the centres of its outermost texels.
 //   table    values of any size; linear filter within and between levels; clamp in u, clamp in v
 //   uv       coordinates of both angles, 0 and 1 at the ends of the axes; in [0, 1]
@@ -6754,7 +7710,10 @@ static inline float4 vair_angle_table_lookup(image2d_t table, sampler_t table_sa
     return vair_lookup_level(table, table_sampler, table_layout, margin + uv
         * ((float2)(1.0f) - 2.0f * margin), 0.0f);
 }
+#endif
 
+#ifndef VAIR_ANGLE_SHARE_6986CCFD
+#define VAIR_ANGLE_SHARE_6986CCFD
 // Angle whose sine is c, from -pi / 2 to pi / 2, as a coordinate from 0 to 1.
 //   c           cosine of the angle with an axis; in [-1, 1]
 //   returns     asin(c) / pi + 1/2, in [0, 1]; 1/2 exactly at 0
@@ -6770,7 +7729,10 @@ static inline float vair_angle_share(float c) {
         * (0.5f + a * (-0.068307295f + a * (0.028283684f + a * high)));
     return c >= 0.0f ? 1.0f - share : share;
 }
+#endif
 
+#ifndef VAIR_STRAND_TABLE_UV_3351B52D
+#define VAIR_STRAND_TABLE_UV_3351B52D
 // Coordinates of a table over the angles of light and viewer with a strand: axes warped by the arc
 // sine.
 //   cos_l       t.l, cosine between the tangent and the direction to the light; in [-1, 1]
@@ -6787,7 +7749,10 @@ static inline float vair_angle_share(float c) {
 static inline float2 vair_strand_table_uv(float cos_l, float cos_v) {
     return (float2)(vair_angle_share(cos_l), vair_angle_share(cos_v));
 }
+#endif
 
+#ifndef VAIR_FACTORED_STRAND_SHADE_59E58E43
+#define VAIR_FACTORED_STRAND_SHADE_59E58E43
 // Light from one direction that a reflectance in four factors sends to the viewer, for light of 1.
 //   p           factor of the directions to light and viewer, over vair_parabolic_uv; linear filter
 //               within and between levels; clamp in u, clamp in v
@@ -6813,7 +7778,10 @@ static inline float3 vair_factored_strand_shade(image2d_t p, sampler_t p_sampler
     return vair_angle_table_lookup(r, r_sampler, r_layout, vair_strand_table_uv(l.x, v.x)).xyz
         * vair_factored_shade(p, p_sampler, p_layout, q, q_sampler, q_layout, l, v, scale);
 }
+#endif
 
+#ifndef VAIR_ACROSS_SHARE_8322D4DD
+#define VAIR_ACROSS_SHARE_8322D4DD
 // Angle of a direction about the tangent x, from -y over the normal z to y, as a coordinate from 0
 // to 1.
 //   w           direction in the local frame; unit vector
@@ -6825,7 +7793,10 @@ static inline float3 vair_factored_strand_shade(image2d_t p, sampler_t p_sampler
 static inline float vair_across_share(float3 w) {
     return clamp(0.5f + 2.0f * vair_turn_of(w.y, w.z), 0.0f, 1.0f);
 }
+#endif
 
+#ifndef VAIR_FACTORED_SATIN_SHADE_3D181C40
+#define VAIR_FACTORED_SATIN_SHADE_3D181C40
 // Light from one direction that cloth in four factors sends to the viewer, for light of 1.
 //   p           factor of the directions to light and viewer, over vair_parabolic_uv; linear filter
 //               within and between levels; clamp in u, clamp in v
@@ -6854,7 +7825,10 @@ static inline float3 vair_factored_satin_shade(image2d_t p, sampler_t p_sampler,
     return turned * vair_factored_shade(p, p_sampler, p_layout, q, q_sampler, q_layout, l, v,
         scale);
 }
+#endif
 
+#ifndef VAIR_STRAND_COSINE_TABLE_C624729D
+#define VAIR_STRAND_COSINE_TABLE_C624729D
 // Cosine between the viewer and the best mirror direction of a strand, read from a table.
 //   table       the strand cosine over vair_strand_table_uv in its first channel, as `vair table
 //               vair_strand_cosine` writes it; any size; linear filter within and between levels;
@@ -6875,5 +7849,4 @@ static inline float vair_strand_cosine_table(image2d_t table, sampler_t table_sa
     return vair_angle_table_lookup(table, table_sampler, table_layout,
         vair_strand_table_uv(cos_l, cos_v)).x;
 }
-
 #endif
