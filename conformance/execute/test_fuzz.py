@@ -12,6 +12,8 @@ Known benign differences are kept out by the generator: see conformance/fuzz/exp
 
 from __future__ import annotations
 
+import ast
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -190,6 +192,25 @@ def test_programs_read_back_from_their_ir(number: int, tmp_path: Path) -> None:
 def test_a_program_is_the_same_each_time() -> None:
     assert make_case(SEED, 7) == make_case(SEED, 7)
     assert make_case(SEED, 7).text != make_case(SEED, 8).text
+
+
+def test_programs_hold_loops_that_a_parameter_ends() -> None:
+    """Of both types; some bodies use the index."""
+    ended, used = {"i32": 0, "u32": 0}, 0
+    for number in range(300):
+        for function in ast.walk(ast.parse(make_case(SEED, number).text)):
+            if not isinstance(function, ast.FunctionDef):
+                continue
+            stated = {a.arg: ast.unparse(a.annotation or a) for a in function.args.args}
+            for loop in ast.walk(function):
+                head = ast.unparse(loop.iter) if isinstance(loop, ast.For) else ""
+                limit = re.match(r"range\(min\((\w+),", head)
+                if limit is None or not isinstance(loop, ast.For):
+                    continue
+                ended["i32" if "i32" in stated[limit[1]] else "u32"] += 1
+                index = ast.unparse(loop.target)
+                used += any(isinstance(n, ast.Name) and n.id == index for s in loop.body for n in ast.walk(s))
+    assert min(*ended.values(), used) >= 3, (ended, used)
 
 
 def test_an_invalid_program_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:

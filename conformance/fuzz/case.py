@@ -85,7 +85,7 @@ def _function(
     names = choice.sample(NAMES, len(types))
     scope = Scope(structs, helpers)
     for n, t in zip(names, types, strict=True):
-        scope.add(Local(n, t, False, -SIGNED_RANGE, SIGNED_RANGE))
+        scope.add(Local(n, t, False, -SIGNED_RANGE, SIGNED_RANGE, parameter=True))
     returns = choice.choice((*VALUE_TYPES, *structs))
     body = Statements(choice, scope, returns).body()
     arguments = ast.arguments([], [ast.arg(n) for n in names], None, [], [], None, [])
@@ -109,12 +109,17 @@ def _draw(rng: np.random.Generator, type_: Type, lanes: int) -> Any:
     element = getattr(type_, "element", type_)
     if element == BOOL:
         return rng.random(shape) < 0.5
+    few = slice(lanes // 4)  # of these lanes integers are small enough to end a loop early
     if element == I32:
-        return rng.integers(-SIGNED_RANGE, SIGNED_RANGE + 1, shape, dtype=np.int32)
+        signed = rng.integers(-SIGNED_RANGE, SIGNED_RANGE + 1, shape, dtype=np.int32)
+        signed[few] = signed[few] % 8 - 2
+        return signed
     if element == U32:
         small = rng.integers(0, 64, shape, dtype=np.uint32)
         large = rng.integers(0, 2**32, shape, dtype=np.uint32)
-        return np.where(rng.random(shape) < 0.5, small, large)
+        words = np.where(rng.random(shape) < 0.5, small, large)
+        words[few] %= 8
+        return words
     values = rng.uniform(-RANGE, RANGE, shape).astype(np.float32)
     values[: lanes // 2] = np.round(values[: lanes // 2] * 4.0) / 4.0
     return values

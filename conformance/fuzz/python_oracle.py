@@ -115,6 +115,12 @@ def _alike(a: Any, b: Any) -> tuple[Any, Any]:
     return a, b
 
 
+def _range(*bounds: Any) -> Any:
+    """Python's range; its numbers are of the type of a limit, so that those of a u32 wrap."""
+    found = range(*bounds)
+    return map(np.uint32, found) if isinstance(bounds[-1], np.uint32) else found
+
+
 def _f(name: str) -> Callable[..., Any]:
     function = getattr(np, name)
     return each(lambda *args: np.float32(function(*map(np.float32, args))))
@@ -139,7 +145,7 @@ NAMESPACE: dict[str, Any] = {
     "u32": to_u32,
     **{f"vec{n}": vector(n, np.float32) for n in (2, 3, 4)},
     **{f"uvec{n}": vector(n, to_u32) for n in (2, 3)},
-    "range": range,
+    "range": _range,
     "helper": lambda f: f,
 }
 

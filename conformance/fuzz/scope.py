@@ -9,13 +9,17 @@ from codegen.ir.types import Struct, Type
 
 @dataclass(frozen=True)
 class Local:
-    """A visible name. `least` and `most` enclose an i32, so that no sum of them leaves 32 bits."""
+    """A visible name. `least` and `most` enclose an i32, so that no sum of them leaves 32 bits.
+
+    parameter  whether it is one of the function: only those may end a loop early
+    """
 
     name: str
     type: Type
     writable: bool = False
     least: int = 0
     most: int = 0
+    parameter: bool = False
 
 
 @dataclass(frozen=True)

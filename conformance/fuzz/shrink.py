@@ -52,6 +52,8 @@ def _statement(s: ir.Stmt) -> Iterator[tuple[ir.Stmt, ...]]:
         case ir.For():
             if s.stop - s.start > 1:
                 yield (replace(s, stop=s.start + 1),)
+            if s.limit is not None and s.limit.type == I32:
+                yield (replace(s, limit=None),)
             for inner in _bodies(s.body):
                 yield (replace(s, body=inner),)
         case _:

@@ -13,6 +13,8 @@ from conformance.fuzz.scope import Local, Scope
 SHALLOW, DEEP, DEEP_SHARE = 2, 4, 0.15
 """Heights of the expressions, and how often the greater one is taken."""
 MOST_TRIPS = 4
+LIMITED_SHARE = 0.5
+"""How often a loop ends early where a parameter can end it."""
 NESTING = 2
 """Blocks inside blocks."""
 LOCAL_TYPES: tuple[Type, ...] = (F32, F32, F32, VEC3, VEC3, VEC2, VEC4, U32, U32, I32, BOOL, UVEC3)
@@ -114,14 +116,18 @@ class Statements:
         return ast.If(test, then, orelse)
 
     def loop(self, nesting: int) -> ast.stmt:
-        """for i in range(constant)."""
+        """for i in range(constant), or as far as a parameter says."""
         index = self.choice.choice(self.scope.free(NAMES))
-        start = self.choice.choice((0, 0, 0, 1, -2))
+        limits = [x for x in self.scope.visible().values() if x.parameter and x.type in (I32, U32)]
+        limit = self.choice.choice(limits) if limits and self.choice.chance(LIMITED_SHARE) else None
+        start = 0 if limit else self.choice.choice((0, 0, 0, 1, -2))
         stop = start + self.choice.randint(1, MOST_TRIPS)
         bounds = [number(stop)] if start == 0 else [number(start), number(stop)]
+        if limit:
+            bounds = [call("min", name(limit.name), number(stop))]
 
         def make() -> list[ast.stmt]:
-            self.scope.add(Local(index, I32, False, start, stop - 1))
+            self.scope.add(Local(index, limit.type if limit else I32, False, start, stop - 1))
             return self.block(self.choice.randint(1, 2), nesting - 1)
 
         body = self.inside(make)
