@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import ast
 
-from codegen.ir.types import BOOL, F32, I32, U32, UVEC2, UVEC3, VEC2, VEC3, VEC4, Scalar, Struct, Type, Vector
+from codegen.ir.types import BOOL, F32, I32, U32, UVEC2, UVEC3, VEC2, VEC3, Scalar, Struct, Type, Vector
 from conformance.fuzz.choices import FLOATS, WORDS_U32, Choice, binary, call, name, number
+from conformance.fuzz.floats import make_float
 from conformance.fuzz.scope import Scope
 
-VECTORS = (VEC2, VEC3, VEC4)
 UVECTORS = (UVEC2, UVEC3)
 LARGEST_CONVERTED = 1.0e6
 """Floats are brought into this range before they become integers."""
@@ -214,6 +214,4 @@ class Expressions:
 
     def float(self, type_: Type, depth: int) -> ast.expr:
         """A float or a vector of floats."""
-        from conformance.fuzz.floats import make_float
-
         return make_float(self, type_, depth)

@@ -3,20 +3,29 @@
 from __future__ import annotations
 
 import ast
-from typing import TYPE_CHECKING
+from typing import Protocol
 
-from codegen.ir.types import F32, I32, U32, VEC3, Type, Vector
-from conformance.fuzz.choices import binary, call, number
+from codegen.ir.types import F32, I32, U32, VEC2, VEC3, VEC4, Type, Vector
+from conformance.fuzz.choices import Choice, binary, call, number
 
-if TYPE_CHECKING:
-    from conformance.fuzz.expressions import Expressions
-
-VECTORS_OF_FLOATS = ("vec2", "vec3", "vec4")
+VECTORS = (VEC2, VEC3, VEC4)
 EXPONENT_BITS, FRACTION_BITS = 0x3F800000, 0x007FFFFF
 """With these bits an integer becomes a float in [1, 2)."""
 
 
-def make_float(of: Expressions, type_: Type, depth: int) -> ast.expr:
+class Maker(Protocol):
+    """What makes the parts of an expression: conformance.fuzz.expressions.Expressions."""
+
+    choice: Choice
+
+    def make(self, type_: Type, depth: int) -> ast.expr:
+        """An expression of any type."""
+
+    def construct(self, type_: Vector, depth: int) -> ast.expr:
+        """A vector of numbers and shorter vectors."""
+
+
+def make_float(of: Maker, type_: Type, depth: int) -> ast.expr:
     """An expression of type f32, vec2, vec3 or vec4."""
     choice = of.choice
     kind = choice.one(sum=5, product=5, quotient=2, negate=1, simple=3, bounded=4, special=3)
@@ -36,7 +45,7 @@ def make_float(of: Expressions, type_: Type, depth: int) -> ast.expr:
     return _vector(of, type_, depth) if isinstance(type_, Vector) else _scalar(of, depth)
 
 
-def _arithmetic(of: Expressions, type_: Type, depth: int, op: str) -> ast.expr:
+def _arithmetic(of: Maker, type_: Type, depth: int, op: str) -> ast.expr:
     a = of.make(type_, depth - 1)
     if op == "*" and isinstance(type_, Vector) and of.choice.chance(0.5):
         scalar = of.make(F32, depth - 1)
@@ -49,7 +58,7 @@ def _filled(type_: Type, value: float) -> ast.expr:
     return call(type_.name, number(value)) if isinstance(type_, Vector) else number(value)
 
 
-def _positive(of: Expressions, type_: Type, depth: int) -> ast.expr:
+def _positive(of: Maker, type_: Type, depth: int) -> ast.expr:
     """Something that stays off 0."""
     inner = call("abs", of.make(type_, depth - 1))
     if of.choice.chance(0.5):
@@ -57,7 +66,7 @@ def _positive(of: Expressions, type_: Type, depth: int) -> ast.expr:
     return call("max", inner, _filled(type_, of.choice.choice((0.25, 1.0))))
 
 
-def _bounded(of: Expressions, type_: Type, depth: int) -> ast.expr:
+def _bounded(of: Maker, type_: Type, depth: int) -> ast.expr:
     """A function whose argument is kept where it is defined and promised."""
     name = of.choice.choice(
         ("sqrt", "inverse_sqrt", "exp", "exp2", "log", "log2", "sin", "cos", "atan2", "clamp")
@@ -82,7 +91,7 @@ def _bounded(of: Expressions, type_: Type, depth: int) -> ast.expr:
             return clamped(-1.0, of.choice.choice((-1.0, 0.0, 1.0, 2.5)))
 
 
-def _scalar(of: Expressions, depth: int) -> ast.expr:
+def _scalar(of: Maker, depth: int) -> ast.expr:
     kind = of.choice.one(dot=2, length=2, convert=3, bits=1)
     if kind == "convert":
         source = of.choice.choice((U32, I32))
@@ -90,20 +99,14 @@ def _scalar(of: Expressions, depth: int) -> ast.expr:
     if kind == "bits":
         fraction = binary(of.make(U32, depth - 1), "&", number(FRACTION_BITS))
         return call("bits_to_float", binary(fraction, "|", number(EXPONENT_BITS)))
-    vector = of.choice.choice(_vectors())
+    vector = of.choice.choice(VECTORS)
     return call(kind, *(of.make(vector, depth - 1) for _ in range(2 if kind == "dot" else 1)))
 
 
-def _vector(of: Expressions, type_: Vector, depth: int) -> ast.expr:
+def _vector(of: Maker, type_: Vector, depth: int) -> ast.expr:
     kind = of.choice.one(construct=4, normalize=1, cross=2 if type_ == VEC3 else 0)
     if kind == "construct":
         return of.construct(type_, depth)
     if kind == "cross":
         return call("cross", of.make(VEC3, depth - 1), of.make(VEC3, depth - 1))
     return call("normalize", _positive(of, type_, depth))
-
-
-def _vectors() -> tuple[Vector, ...]:
-    from conformance.fuzz.expressions import VECTORS
-
-    return VECTORS
