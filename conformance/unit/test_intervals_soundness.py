@@ -23,13 +23,13 @@ import pytest
 
 from codegen.evaluate import evaluate
 from codegen.intervals import TABLES, Table, load_table, permitted
-from codegen.intervals.accuracy import Absolute, Ulp
 from codegen.library import load_library
 from conformance.check.engine import draws
 from conformance.guarantees.sample import Sample, together
 from conformance.soundness.held import either_way, held, holds, precisely
 from conformance.soundness.walk import enclosed
 from conformance.unit.support.sources import library_of
+from conformance.unit.support.tight import TOO_TIGHT, tightened
 
 LIBRARY = load_library()
 UNIFORM, FAMILY, PRECISE = 1000, 80, 60
@@ -88,30 +88,14 @@ def test_following_forks_only_narrows(name: str) -> None:
     assert wide.contains(narrow.high).all()
 
 
-TOO_TIGHT: dict[str, tuple[str, Ulp | Absolute]] = {
-    "1.0 / a": ("/", Ulp(0.1)),
-    "inverse_sqrt(a)": ("inverse_sqrt", Ulp(0.1)),
-    "sqrt(a)": ("sqrt", Ulp(0.1)),
-    "exp(a)": ("exp", Ulp(0.1)),
-    "exp2(a)": ("exp2", Ulp(0.1)),
-    "log(a)": ("log", Absolute(1e-9, (0.5, 2.0), Ulp(0.1))),
-    "log2(a)": ("log2", Absolute(1e-9, (0.5, 2.0), Ulp(0.1))),
-    "sin(a)": ("sin", Absolute(1e-9, (-3.0, 3.0))),
-    "cos(a)": ("cos", Ulp(0.1)),
-    "atan2(a, 2.0)": ("atan2", Ulp(0.1)),
-}
-
-
 @pytest.mark.parametrize("text", TOO_TIGHT)
 def test_too_tight_a_row_is_caught(text: str, tmp_path: Path) -> None:
-    operation, accuracy = TOO_TIGHT[text]
     library = library_of(tmp_path, f"def probe(a: X) -> f32:\n    return {text}\n")
     inputs = {"a": np.linspace(0.1, 2.9, 999).astype(np.float32)}
     single = evaluate(library, "probe", inputs)
     table = load_table("wgsl")
     assert permitted(library, "probe", inputs, table).contains(single).all()
-    tight = replace(table, rows={**table.rows, operation: replace(table.row(operation), accuracy=accuracy)})
-    assert not permitted(library, "probe", inputs, tight).contains(single).all()
+    assert not permitted(library, "probe", inputs, tightened(table, text)).contains(single).all()
 
 
 def changed(table: Table, **changes: Any) -> Table:

@@ -10,7 +10,6 @@ The whole sweep is `python -m conformance.soundness`; the nightly run does what 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +19,6 @@ import pytest
 
 from codegen.evaluate import evaluate
 from codegen.intervals import Table, load_table, permitted
-from codegen.intervals.accuracy import Absolute, Ulp
 from codegen.library import load_library
 from conformance.soundness import record
 from conformance.soundness import sweep as sweeping
@@ -30,6 +28,7 @@ from conformance.soundness.held import either_way, held, scalars
 from conformance.soundness.sweep import different, sweep
 from conformance.soundness.walk import enclosed, leaves
 from conformance.unit.support.sources import library_of
+from conformance.unit.support.tight import TOO_TIGHT, tightened
 
 LIBRARY = load_library()
 SEED = 20261123
@@ -98,21 +97,8 @@ def test_intervals_hold_the_exact_value(name: str, monkeypatch: pytest.MonkeyPat
         assert count.enclosed > count.precise
 
 
-TOO_TIGHT: dict[str, tuple[str, Ulp | Absolute]] = {
-    "1.0 / a": ("/", Ulp(0.1)),
-    "inverse_sqrt(a)": ("inverse_sqrt", Ulp(0.1)),
-    "exp(a)": ("exp", Ulp(0.1)),
-    "exp2(a)": ("exp2", Ulp(0.1)),
-    "log(a)": ("log", Absolute(1e-9, (0.5, 2.0), Ulp(0.1))),
-    "sin(a)": ("sin", Absolute(1e-9, (-3.0, 3.0))),
-    "cos(a)": ("cos", Ulp(0.1)),
-    "atan2(a, 2.0)": ("atan2", Ulp(0.1)),
-}
-
-
 @pytest.mark.parametrize("text", TOO_TIGHT)
 def test_too_tight_a_row_is_caught(text: str, tmp_path: Path) -> None:
-    operation, accuracy = TOO_TIGHT[text]
     library = library_of(tmp_path, f"def probe(a: X) -> f32:\n    return {text}\n")
     inputs = {"a": np.linspace(0.1, 2.9, FEW).astype(np.float32)}
     value, lost = enclosed(library, "probe", inputs)
@@ -121,9 +107,8 @@ def test_too_tight_a_row_is_caught(text: str, tmp_path: Path) -> None:
         return int(held(permitted(library, "probe", inputs, table), value, lost).outside.sum())
 
     table = load_table("wgsl")
-    tight = replace(table, rows={**table.rows, operation: replace(table.row(operation), accuracy=accuracy)})
     assert outside(table) == 0
-    assert outside(tight) > FEW // 2
+    assert outside(tightened(table, text)) > FEW // 2
 
 
 def test_tables_that_promise_the_same_are_swept_once() -> None:
