@@ -9,8 +9,9 @@ import click
 from rich.console import Console
 from rich.progress import Progress
 
-from codegen.errors import UserError, unknown
+from codegen.errors import unknown
 from codegen.library import load_library
+from conformance.command_line import run
 from conformance.soundness import record
 from conformance.soundness.sweep import sweep
 
@@ -58,8 +59,4 @@ def main(names: tuple[str, ...], points: int, seconds: int, fresh: bool, keep: b
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except UserError as e:
-        click.echo(f"error: {e}", err=True)
-        sys.exit(2)
+    run(main)

@@ -14,6 +14,7 @@ from rich.progress import Progress
 from codegen.backends import TARGETS
 from codegen.errors import UserError, unknown
 from codegen.library import load_library
+from conformance.command_line import run
 from conformance.executor import Job, Result, available, open_executor
 from conformance.sweep.plan import pieces, short
 from conformance.sweep.positions import Positions, order_of, sweepable
@@ -128,8 +129,4 @@ def told(entry: Entry) -> str:
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except UserError as e:
-        click.echo(f"error: {e}", err=True)
-        sys.exit(2)
+    run(main)
