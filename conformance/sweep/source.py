@@ -1,16 +1,21 @@
-"""What the results of a sweep depend on: a function's bounds, and the program of a target, comments aside.
+"""What the results of a sweep depend on: a function's bounds, and the program of a target.
 
 Files hold several functions; a new one beside a function, or another word about it, leaves its results alone.
+So do the guards that keep a definition from being read twice: they are no code, and their names may change.
 """
 
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Iterable
 
 from codegen.kernels import kernel
 from codegen.library import Library
 from targets import TARGETS
+
+NO_CODE = re.compile(r"//|#ifndef \w+$|#define \w+$|#endif$|$")
+"""Lines without code: comments, guards, nothing."""
 
 
 def source_of(library: Library, name: str, target: str) -> str:
@@ -20,6 +25,6 @@ def source_of(library: Library, name: str, target: str) -> str:
 
 
 def hash_of(program: str, bounds: Iterable[str] = ()) -> str:
-    """Hash of a program without its lines of comment, and of further lines."""
-    lines = [line for line in program.splitlines() if line.strip() and not line.lstrip().startswith("//")]
+    """Hash of the lines of code of a program, and of further lines."""
+    lines = [line for line in program.splitlines() if not NO_CODE.match(line.strip())]
     return hashlib.sha256("\n".join([*lines, *bounds]).encode()).hexdigest()[:16]

@@ -214,6 +214,8 @@ def test_a_piece_of_other_sources_does_not_count(tmp_path: Path) -> None:
 def test_comments_are_no_part_of_a_source() -> None:
     program = kernel(LIBRARY, NAME, "glsl")
     assert hash_of(f"// a word\n\n{program}\n   // another\n") == hash_of(program)
+    assert hash_of(f"#ifndef A_1F\n#define A_1F\n{program}\n#endif\n") == hash_of(program)
+    assert hash_of(f"#define A 1\n{program}") != hash_of(program)
     assert hash_of(program.replace("0.0", "1.0")) != hash_of(program)
     assert hash_of(program, ["a bound"]) != hash_of(program)
     assert source_of(LIBRARY, NAME, "glsl") == hash_of(program, [b.describe() for b in LIBRARY.bounds[NAME]])
