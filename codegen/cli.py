@@ -26,6 +26,8 @@ COMMANDS = {
     "table": "codegen.commands.table:command",
     "check": "conformance.commands.check:command",
     "scene": "codegen.commands.scene:command",
+    "vendor": "codegen.commands.vendor:command",
+    "verify": "codegen.commands.verify:command",
     "render": "conformance.commands.render:command",
     "fur": "conformance.commands.fur:command",
     "report": "conformance.commands.report:command",

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from codegen.backends import TARGETS, dialects_of
-from codegen.emit.dialect import Dialect
+from codegen.emit.dialect import Dialect, file_name
 from codegen.emit.module import emit
 from codegen.errors import UserError
 from codegen.estimators import estimator_sources
@@ -22,8 +22,8 @@ from codegen.readme import with_generated_parts
 
 
 def include_name(d: Dialect) -> str:
-    """The file name of a dialect's include: vair-430.glsl, vair-1.2.cl, vair.wgsl."""
-    return f"vair.{d.extension}" if d.name == d.target else f"vair-{d.name}.{d.extension}"
+    """The file name of a dialect's include."""
+    return file_name(d, "vair")
 
 
 def generated_files() -> Iterator[tuple[Path, str]]:

@@ -60,10 +60,15 @@ PLAIN = KernelOptions()
 @functools.lru_cache(maxsize=512)
 def kernel(library: Library, name: str, target: str, options: KernelOptions = PLAIN) -> str:
     """The complete program that loads a function's arguments, calls it and stores its value."""
+    body = kernel_body(library, name, target, options)
+    return _complete(library, name, target, options, body)
+
+
+def kernel_body(library: Library, name: str, target: str, options: KernelOptions = PLAIN) -> str:
+    """What stands for $body in the harness: the statements that load, call and store."""
     chosen = _dialect(target, options)
     call = _called(library, name, options)
-    lines = _pair(call, chosen) if options.form == "pair" else _single(call, chosen)
-    return _complete(library, name, target, options, lines)
+    return "\n".join(_pair(call, chosen) if options.form == "pair" else _single(call, chosen))
 
 
 def literal_kernel(
@@ -87,7 +92,7 @@ def literal_kernel(
         call = ir.Call(function.returns, function.name, tuple(arguments))
         lines += printer.block(_result(f"result_{j}", call), "    ")
         lines += _stores(function.returns, f"result_{j}", j * len(slots), printer)
-    return _complete(library, name, target, options, lines)
+    return _complete(library, name, target, options, "\n".join(lines))
 
 
 def literal_cases(type_: Type) -> int:
@@ -115,12 +120,12 @@ def _called(library: Library, name: str, options: KernelOptions) -> ir.Function:
     return add_prefix(Unit(selection.functions, selection.structs), DEFAULT_PREFIX).functions[-1]
 
 
-def _complete(library: Library, name: str, target: str, options: KernelOptions, lines: list[str]) -> str:
+def _complete(library: Library, name: str, target: str, options: KernelOptions, body: str) -> str:
     text = options.prelude + emit(library, _dialect(target, options), [name])
     maps = [TEXTURE_STEM + p.name for p in library.function(name).parameters if p.type == TEXTURE]
     if maps and (options.form != "plain" or options.source != "words"):
         raise UserError(f"{name} reads maps: only kernels of the form plain, with loaded words, pass them")
-    return complete_program(target, text, "\n".join(lines), options.version, options.form, maps)
+    return complete_program(target, text, body, options.version, options.form, maps)
 
 
 def _single(function: ir.Function, chosen: Dialect) -> list[str]:

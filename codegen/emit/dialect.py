@@ -66,6 +66,12 @@ class Dialect:
     line_map: str = field(default="")
 
 
+def file_name(dialect: Dialect, stem: str) -> str:
+    """The name of a dialect's file: vair-430.glsl, vair-1.2.cl, vair.wgsl."""
+    own = stem if dialect.name == dialect.target else f"{stem}-{dialect.name}"
+    return f"{own}.{dialect.extension}"
+
+
 def with_precise(dialect: Dialect) -> Dialect:
     """The dialect with its `precise` before every local; raises UserError where it has none."""
     if not dialect.precise:

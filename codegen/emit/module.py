@@ -55,7 +55,7 @@ def emit(
     source_hash = selection.source_hash
     if dialect.arithmetic == "half":
         source_hash = half_hash(library, source_hash)
-    head = _header(dialect, source_hash, names, prefix)
+    head = emitted_header(dialect, source_hash, names, prefix)
     if dialect.arithmetic == "half" and dialect.half_enable:
         head += ["", dialect.half_enable]
     return file_text(dialect, head, defined)
@@ -129,7 +129,10 @@ HALF_NOTE = (
 )
 
 
-def _header(dialect: Dialect, source_hash: str, names: Sequence[str] | None, prefix: str) -> list[str]:
+def emitted_header(
+    dialect: Dialect, source_hash: str, names: Sequence[str] | None, prefix: str
+) -> list[str]:
+    """The header of what `emit` gives."""
     command = f"vair emit --target {dialect.target} --dialect {dialect.name}"
     if dialect.arithmetic == "half":
         command += " --precision half"

@@ -82,9 +82,10 @@ def emitted(
     extended = library.with_functions([documented(scene, general, reduced)])
     selection = extended.select([scene.function])
     defined = definitions(extended, chosen, selection, prefix)
+    named = "" if prefix == DEFAULT_PREFIX else f", prefix {prefix}"
     head = header(
         chosen,
-        f"vair scene {scene.path.name}, target {chosen.target}, dialect {chosen.name}",
+        f"vair scene {scene.path.name}, target {chosen.target}, dialect {chosen.name}{named}",
         f"Budget {_plain(scene.budget_text)}; source hash {selection.source_hash}",
         f"{DIRECTIONS} Colours are linear RGB. {FINITE}",
     )

@@ -1,0 +1,96 @@
+"""`vair vendor`: files to keep a copy of, with a lock."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+
+from codegen.backends import open_runtime
+from codegen.emit.module import DEFAULT_PREFIX
+from codegen.errors import UserError
+from codegen.library import Library, load_library
+from codegen.vendor.install import install, read_old_lock
+from codegen.vendor.lock import NAME
+from codegen.vendor.options import Options, choose_dialects
+from codegen.vendor.plan import Plan, plan_functions
+from codegen.vendor.scene_plan import plan_scene, scene_dialects
+
+NO_DRIVERS = "left out by --no-drivers"
+
+
+@click.command("vendor")
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option("--function", "functions", multiple=True, help="This function with what it needs; repeatable.")
+@click.option("--scene", type=click.Path(path_type=Path), help="The function of a scene file instead.")
+@click.option("--target", "targets", multiple=True, help="glsl, wgsl or opencl; repeatable.")
+@click.option("--dialect", "dialects", multiple=True, help="A dialect by name, or all; repeatable.")
+@click.option("--prefix", help=f"Put before every name.  [default: {DEFAULT_PREFIX}]")
+@click.option("--per-function", is_flag=True, help="One file per function instead of one per dialect.")
+@click.option("--force", is_flag=True, help="Replace files that were edited or are not Vair's.")
+@click.option("--no-drivers", is_flag=True, help="With --scene: prove by the float32 evaluation only.")
+def command(
+    folder: Path,
+    functions: tuple[str, ...],
+    scene: Path | None,
+    targets: tuple[str, ...],
+    dialects: tuple[str, ...],
+    prefix: str | None,
+    per_function: bool,
+    force: bool,
+    no_drivers: bool,
+) -> None:
+    """Write files and vair.lock into DIR, or update what is there.
+
+    Without further options an existing folder keeps those of its lock. All functions if none is named; the
+    default dialect of each target if none is named. Files that were edited are refused, not overwritten.
+    """
+    library = load_library()
+    old = read_old_lock(folder, force=force)
+    given = any((functions, scene, targets, dialects, prefix is not None, per_function))
+    if old is not None and not given:
+        options = old.options
+    else:
+        chosen = choose_dialects(targets, dialects) if targets or dialects or scene is None else ()
+        if scene is not None:
+            chosen = scene_dialects(scene, library, chosen)
+        options = Options(
+            dialects=chosen,
+            functions=functions,
+            scene=_relative(scene, folder) if scene is not None else "",
+            prefix=DEFAULT_PREFIX if prefix is None else prefix,
+            per_function=per_function,
+        )
+    plan = planned(library, options, folder, drivers=not no_drivers)
+    changed = install(folder, plan, force=force)
+    count = len(plan.lock.functions)
+    click.echo(
+        f"{folder}: {count} function{'s' if count > 1 else ''} in {len(plan.files)} "
+        f"file{'s' if len(plan.files) > 1 else ''}, {len(changed) or 'none'} of them changed; {NAME}"
+    )
+
+
+def planned(library: Library, options: Options, folder: Path, *, drivers: bool) -> Plan:
+    """What would be written now."""
+    if not options.scene:
+        return plan_functions(library, options)
+    progress = Console(stderr=True)
+    with progress.status("reading the scene") as status:
+        say = status.update if progress.is_terminal else lambda sentence: None
+        return plan_scene(library, options, folder, runtime if drivers else lambda target: NO_DRIVERS, say)
+
+
+def runtime(target: str) -> Any:
+    """The runtime of a target, or the reason why there is none."""
+    try:
+        return open_runtime(target)
+    except UserError as e:
+        return str(e)
+
+
+def _relative(scene: Path, folder: Path) -> str:
+    """A scene as the lock names it, so that both may move together."""
+    return Path(os.path.relpath(scene.resolve(), folder.resolve())).as_posix()
