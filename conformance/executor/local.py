@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import signal
 from collections import deque
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -34,8 +35,16 @@ class Here:
             yield Result(job, {}, missing) if missing else perform(job)
 
 
+def leave_interrupts_to_the_parent() -> None:
+    """For a worker: Ctrl-C reaches all processes of a terminal, also those in the middle of a driver."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 class Processes:
-    """A pool of processes; each opens its own devices. A process that dies loses nothing."""
+    """A pool of processes; each opens its own devices. A process that dies loses nothing.
+
+    Interrupted, it ends when its workers are done with the jobs that they have.
+    """
 
     def __init__(self, workers: int = 2) -> None:
         self.workers = workers
@@ -66,7 +75,10 @@ class Processes:
         spawn = multiprocessing.get_context("spawn")  # drivers do not survive a fork
         under_way: dict[Future[Result], Job] = {}
         died: list[Job] = []
-        with ProcessPoolExecutor(min(self.workers, len(waiting)), mp_context=spawn) as pool:
+        pool = ProcessPoolExecutor(
+            min(self.workers, len(waiting)), mp_context=spawn, initializer=leave_interrupts_to_the_parent
+        )
+        try:
             while under_way or (waiting and not died):
                 while waiting and not died and len(under_way) < self.workers * QUEUED_PER_WORKER:
                     try:
@@ -83,4 +95,6 @@ class Processes:
                         yield future.result()
                     except BrokenProcessPool:
                         died.append(job)
+        finally:
+            pool.shutdown(cancel_futures=True)
         return died

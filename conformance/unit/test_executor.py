@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor as Pool
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -59,6 +63,36 @@ def test_a_process_that_dies_loses_nothing(tmp_path: Path) -> None:
     assert len(answers) == 6
     assert answers[fatal.identity] == ({"sum": 10, "target": "numpy"}, "")
     assert all(not error for _, error in answers.values())
+
+
+def test_an_interrupted_run_ends(tmp_path: Path) -> None:
+    """Ctrl-C reaches every process of the terminal; the workers end all the same, and so does the parent."""
+    begun = tmp_path / "begun"
+    program = (
+        "import pathlib\n"
+        "from conformance.executor import Job, Processes\n"
+        "if __name__ == '__main__':\n"
+        "    jobs = [Job('conformance.unit.cluster_tasks:slow', 'f', 'numpy', seed=k) for k in range(999)]\n"
+        "    for result in Processes(2).run(jobs):\n"
+        f"        pathlib.Path({str(begun)!r}).touch()\n"
+    )
+    (tmp_path / "program.py").write_text(program)
+    command = [sys.executable, str(tmp_path / "program.py")]
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    with subprocess.Popen(
+        command, env=environment, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as run:
+        try:
+            while not begun.exists():
+                assert run.poll() is None
+                time.sleep(0.05)
+            os.killpg(run.pid, signal.SIGINT)
+            _, errors = run.communicate(timeout=60)
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(run.pid, signal.SIGKILL)
+    assert run.returncode not in (0, None)
+    assert errors.count("KeyboardInterrupt") == 1, errors
 
 
 class BreaksWhenIdle(Pool):
