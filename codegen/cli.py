@@ -25,12 +25,14 @@ COMMANDS = {
     "factor": "codegen.commands.factor:command",
     "table": "codegen.commands.table:command",
     "check": "conformance.commands.check:command",
+    "kit": "conformance.commands.kit:command",
     "scene": "codegen.commands.scene:command",
     "vendor": "codegen.commands.vendor:command",
     "verify": "codegen.commands.verify:command",
     "render": "conformance.commands.render:command",
     "fur": "conformance.commands.fur:command",
     "report": "conformance.commands.report:command",
+    "demo": "conformance.commands.demo:command",
 }
 """Subcommand -> where it lives; what runs on devices lives in conformance and is loaded by name."""
 

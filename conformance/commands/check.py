@@ -26,6 +26,7 @@ from conformance.check.report import lines, verdict_lines
 from conformance.check.result import FunctionResult
 from conformance.check.shard import Shard
 from conformance.commands.check_drivers import Plan, check_drivers, replay_on_driver
+from conformance.commands.check_results import check_results, tell_results
 from conformance.drivers import known
 from conformance.drivers.modes import DEFAULT
 from targets import TargetUnavailable
@@ -53,6 +54,10 @@ DETAILED = 6
 @click.option("--details", is_flag=True, help="Verdicts and accuracy of each function; as with --function.")
 @click.option("--replay", "replayed", help="Run cases again: a printed identity, or a file of --json.")
 @click.option("--shard", default="1/1", help="Check a fixed share of the functions and targets only: 2/3.")
+@click.option(
+    "--results", "computed", type=click.Path(path_type=Path), help="Judge results made with a vair kit."
+)
+@click.option("--table", help="With --results: the accuracy table that judges.")
 @click.option("--merge", is_flag=True, help="Join the results in FILES instead of checking.")
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 def command(
@@ -67,6 +72,8 @@ def command(
     details: bool,
     replayed: str | None,
     shard: str,
+    computed: Path | None,
+    table: str | None,
     merge: bool,
     files: tuple[Path, ...],
 ) -> int:
@@ -82,6 +89,15 @@ def command(
     if replayed is not None:
         return run_replay(library, replayed)
     wanted = [library.function(name).name for name in functions] or list(library.public)
+    is_detailed = details or 0 < len(functions) <= DETAILED
+    if computed is not None:
+        if names or drivers or record:
+            raise UserError("--results judges what was computed elsewhere: leave out --target and --driver")
+        judged = check_results(library, computed, functions, table)
+        write_results(judged, [], part, json_file, junit_file)
+        return tell_results(judged, is_detailed)
+    if table is not None:
+        raise UserError("--table needs --results: a driver is judged by the table of its target")
     if resume and not record:
         raise UserError("--resume needs --record")
     complaints: list[str] = []
@@ -101,7 +117,7 @@ def command(
         complaints = judge_known(results, backends)
     for sentence in missing:
         click.echo(f"skipped   {sentence}")
-    for line in lines(results, details or 0 < len(functions) <= DETAILED):
+    for line in lines(results, is_detailed):
         click.echo(line)
     for sentence in complaints:
         click.echo(f"FAILED    {sentence}")
