@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from codegen.ir.types import F32, U32, VEC3, VEC4, Type
 
-MOST_LIGHTS = 8
+LEAST_LIGHTS, MOST_LIGHTS = 8, 64
+"""Lights that the arrays of the uniform block hold, at least and at most."""
 
 _COMMON: list[Any] = [
     ("position", "<f4", 3),
@@ -25,6 +26,9 @@ FUR_VERTEX = np.dtype(_COMMON)
 FIN_VERTEX = np.dtype([*_COMMON, ("face_a", "<f4", 3), ("face_b", "<f4", 3), ("w", "<f4")])
 """Attributes by location. Fins: face_a and face_b are the normals of the two faces at the edge, w is 0 at the
 skin and 1 at the tips."""
+LIT: Any = ("lit", "<f4", 4)
+"""The last attribute of both where lights cast shadows: the share of each of the first three lights that
+arrives at the vertex, and the share of all others together."""
 
 Bytes = npt.NDArray[np.uint8]
 
@@ -81,17 +85,18 @@ _FRAME: tuple[tuple[str, Type | str, int], ...] = (
     ("cos_dark", F32, 1),
     ("cos_lit", F32, 1),
     ("fin_opacity", F32, 1),
-    ("light_direction", VEC4, MOST_LIGHTS),
-    ("light_colour", VEC4, MOST_LIGHTS),
+    ("light_direction", VEC4, 0),
+    ("light_colour", VEC4, 0),
 )
-"""As in targets/glsl/fur/frame.glsl and targets/wgsl/fur/fur.wgsl."""
+"""As in targets/glsl/fur/frame.glsl and targets/wgsl/fur/fur.wgsl; 0: as many as there are lights."""
 
 
-def uniform_block(material: Iterable[tuple[str, Type]]) -> Block:
-    """The block with the members of a material behind those that every fur has."""
+def uniform_block(material: Iterable[tuple[str, Type]], lights: int = LEAST_LIGHTS) -> Block:
+    """The block: members that every fur has, with room for so many lights, then those of a material."""
     members = []
     end = 0
-    for name, type_, count in (*_FRAME, *((name, type_, 1) for name, type_ in material)):
+    for name, type_, said in (*_FRAME, *((name, type_, 1) for name, type_ in material)):
+        count = said or lights
         type_name = type_ if isinstance(type_, str) else type_.name
         components = 16 if type_name == "mat4" else getattr(type_, "size", 1)
         alignment = 16 if components > 2 or count > 1 else 4 * components

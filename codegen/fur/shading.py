@@ -7,13 +7,14 @@ the uniform block each.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from codegen.emit import wrap
 from codegen.emit.dialect import Dialect
 from codegen.emit.expr import ExprPrinter
 from codegen.errors import UserError
+from codegen.fur.layout import LEAST_LIGHTS
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32, VEC3, Scalar, Struct, Type, Vector
 from codegen.library import Library
@@ -42,12 +43,16 @@ class Slot:
 class FurShading:
     """A shading function ready to be called by a stage.
 
-    paths  parameter -> what it is called in scenes, where that is not its own name
+    paths     parameter -> what it is called in scenes, where that is not its own name
+    lights    how many lights the uniform block holds
+    shadowed  whether vertices say which share of the lights arrives at them
     """
 
     function: ir.Function
     material: tuple[Slot, ...]
     paths: Mapping[str, str] = field(default_factory=dict)
+    lights: int = LEAST_LIGHTS
+    shadowed: bool = False
 
     def statements(self, dialect: Dialect, prefix: str) -> list[str]:
         """Statements that leave in `reflected` what the function sends to the eye of one light.
@@ -111,7 +116,8 @@ def fixed_shading(
     made = specialise(library, shading.function.name, constants, new_name=f"{shading.function.name}_fixed")
     extended = library.with_functions([made.function])
     paths = {name: path for path, name in made.parameters.items()}
-    return extended, fur_shading(extended, made.function.name, paths)
+    folded = fur_shading(extended, made.function.name, paths)
+    return extended, replace(folded, lights=shading.lights, shadowed=shading.shadowed)
 
 
 def fur_shading(library: Library, name: str, paths: Mapping[str, str] | None = None) -> FurShading:

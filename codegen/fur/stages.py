@@ -1,6 +1,8 @@
 """The text of the stages that draw fur, per target and dialect: templates of the target, filled.
 
 A template calls library functions by their emitted names; what it calls decides what is emitted with it.
+A line of a template that ends with `//? shadowed` is for coats on which lights cast shadows, one that ends
+with `//? open` for all others.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from codegen.version import VERSION
 DIALECTS = {"glsl": ("330", "es300"), "wgsl": ("wgsl",)}
 """Dialects in which the stages are written."""
 STAGES = ("base", "shell", "fin")
+_ONLY_FOR = re.compile(r" *//\? (shadowed|open)$")
 _CALL = re.compile(rf"\b{DEFAULT_PREFIX}(\w+)\(")
 
 
@@ -29,9 +32,10 @@ def stage_texts(library: Library, shading: FurShading, target: str, dialect: str
     errors  UserError for a target or a dialect in which fur cannot be drawn
     """
     chosen = find_dialect(target, dialect)
-    sources = fur_stages(target)
+    lit = "shadowed" if shading.shadowed else "open"
+    sources = {name: _kept(text, lit) for name, text in fur_stages(target).items()}
     frame = Template(sources.get("frame.glsl", "")).safe_substitute(
-        material=_indented(shading.members(chosen), 4)
+        material=_indented(shading.members(chosen), 4), lights=shading.lights
     )
     lighting = Template(sources.get("lighting.glsl", "")).safe_substitute(
         shading=_indented(shading.statements(chosen, DEFAULT_PREFIX), 8)
@@ -44,11 +48,22 @@ def stage_texts(library: Library, shading: FurShading, target: str, dialect: str
             frame=frame.strip(),
             lighting=lighting.strip(),
             material=_indented(shading.members(chosen), 4),
+            lights=shading.lights,
             shading=_indented(shading.statements(chosen, DEFAULT_PREFIX), 8),
         )
         head = sources.get(f"head-{dialect}.glsl", "").strip()
         texts[name] = _with_library(library, chosen, filled, head, shading.function.name)
     return texts
+
+
+def _kept(text: str, chosen: str) -> str:
+    """The lines of a template for one kind of coat, without the marks."""
+    lines = []
+    for line in text.splitlines():
+        mark = _ONLY_FOR.search(line)
+        if mark is None or mark.group(1) == chosen:
+            lines.append(line if mark is None else line[: mark.start()])
+    return "\n".join(lines) + "\n"
 
 
 def _with_library(library: Library, dialect: Dialect, filled: str, head: str, model: str) -> str:

@@ -103,6 +103,7 @@ class March:
             "share": np.stack([vertices["length_share"], vertices["density_share"]], axis=1),
             "uv": vertices["uv"],
             "height": np.full((count, 1), height, np.float32),
+            **_shadows(vertices),
         }
 
     def _fins(self) -> Varyings:
@@ -136,6 +137,7 @@ class March:
             "uv": vertices["uv"],
             "height": vertices["w"][:, None],
             "opacity": fur.fin_opacity * opacity,
+            **_shadows(vertices),
         }
 
     def _meet(self, positions: npt.NDArray[Any], triangles: npt.NDArray[Any], culled: bool) -> Hits:
@@ -232,9 +234,12 @@ class March:
         needed = {p.name for p in shading.function.parameters}
         total = np.zeros((count, 3))
         rho, cos_dark, cos_lit = fur.surface
-        for light in self.studio.picture.lights:
+        for k, light in enumerate(self.studio.picture.lights):
             l = np.broadcast_to(unit(np.asarray(light.direction, np.float32)), (count, 3))
-            given: dict[str, Any] = {"n": n, "t": t, "l": l, "v": v, "light": light.colour}
+            colour = np.broadcast_to(np.asarray(light.colour, np.float32), (count, 3))
+            if shading.shadowed:
+                colour = points["lit"][:, min(k, len(points["lit"][0]) - 1), None] * colour
+            given: dict[str, Any] = {"n": n, "t": t, "l": l, "v": v, "light": colour}
             if "h" in needed:
                 given["h"] = self.run("half_vector", count, l=l, v=v)
             inputs: dict[str, Any] = {
@@ -255,8 +260,7 @@ class March:
                 cos_dark=cos_dark,
                 cos_lit=cos_lit,
             )
-            colour = 1.0 if "light" in needed else np.asarray(light.colour)
-            total += surface[:, None] * colour * value
+            total += surface[:, None] * (1.0 if "light" in needed else colour) * value
         shadow = self.run(
             "coat_shadow",
             count,
@@ -266,6 +270,11 @@ class March:
         )
         shaded: Doubles = shadow[:, None] * total
         return shaded
+
+
+def _shadows(vertices: npt.NDArray[Any]) -> Varyings:
+    """The shares of lights that arrive at vertices, where lights cast shadows."""
+    return {"lit": vertices["lit"]} if "lit" in (vertices.dtype.names or ()) else {}
 
 
 def _repeated(value: Any, count: int) -> npt.NDArray[Any]:

@@ -21,7 +21,7 @@ from codegen.backends import open_runtime
 from codegen.errors import UserError
 from codegen.fur.shading import fur_shading
 from codegen.library import Library, load_library
-from conformance.picture.fur_render import FurStudio, develop, open_drawing, set_up_fur
+from conformance.picture.fur_render import FurStudio, develop, lit_shading, open_drawing, set_up_fur
 from conformance.picture.image import contact_sheet, write_png
 from conformance.picture.tone import eight_bit
 from targets.raster import Picture
@@ -56,7 +56,7 @@ def panels(library: Library, plan: Mapping[str, Any], **changes: Any) -> list[Pa
             coat_changes[key] = tuple(value) if isinstance(value, list) else value
         coat = replace(studio.fur, **coat_changes)
         material = plan["materials"][entry["material"]] if "material" in entry else studio.material
-        shading = fur_shading(library, entry["model"])
+        shading = lit_shading(fur_shading(library, entry["model"]), studio.picture)
         missing = [slot.path for slot in shading.material if slot.path not in material]
         if missing:
             raise UserError(f'fur_plate.toml: panel "{entry["caption"]}" lacks {", ".join(missing)}')

@@ -14,7 +14,7 @@ from codegen.backends import open_runtime
 from codegen.errors import UserError
 from codegen.fur.coat import FurMesh, grow
 from codegen.fur.kit import kit_files
-from codegen.fur.layout import Block, uniform_block
+from codegen.fur.layout import LEAST_LIGHTS, Block, uniform_block
 from codegen.fur.shading import FurShading, fixed_shading, fur_shading
 from codegen.fur.stages import DIALECTS, stage_texts
 from codegen.fur.states import pass_states
@@ -22,8 +22,10 @@ from codegen.library import Library
 from conformance.picture.backends import models
 from conformance.picture.fur_frame import ball, frame_values, view_projection
 from conformance.picture.fur_settings import Fur
+from conformance.picture.fur_shadow import with_shadows
 from conformance.picture.scene import Picture, Scene, read_scene
 from conformance.picture.shade import bind
+from conformance.picture.sky import lit_by_sky
 from conformance.picture.tone import gradient
 from targets.raster import Draw
 from targets.raster import Scene as Drawing
@@ -50,7 +52,8 @@ class FurStudio:
     @property
     def block(self) -> Block:
         """The uniform block of the stages."""
-        return uniform_block((slot.name, slot.type) for slot in self.shading.material)
+        material = ((slot.name, slot.type) for slot in self.shading.material)
+        return uniform_block(material, self.shading.lights)
 
     @property
     def drawn_size(self) -> tuple[int, int]:
@@ -112,7 +115,7 @@ class FurStudio:
 def set_up_fur(library: Library, path: Path, *, pictured: bool = True, **changes: Any) -> FurStudio:
     """Read and check a scene file with fur, and grow the fur on its mesh.
 
-    pictured  whether a picture is to be drawn; otherwise it may have shadows and any size
+    pictured  whether a picture is to be drawn; otherwise it may have any size
     changes   fields of [render] that are set otherwise than in the file
     errors    UserError
     """
@@ -121,14 +124,20 @@ def set_up_fur(library: Library, path: Path, *, pictured: bool = True, **changes
         missing = "[render]" if scene.picture is None else "[fur]"
         raise UserError(f"{path}: has no {missing} table, which a picture of fur needs")
     picture = replace(scene.picture, **changes)
-    if pictured and picture.shadows:
-        raise UserError(f"{path}: [render] shadows: fur is drawn without cast shadows; set it to false")
     if pictured and max(picture.size) * picture.supersample > LARGEST_SIDE:
         raise UserError(f"{path}: [render] size times supersample may be {LARGEST_SIDE} at most")
     bound = bind(scene, models(library))
-    shading = fur_shading(library, bound.function)
+    picture = lit_by_sky(scene, picture)
+    shading = lit_shading(fur_shading(library, bound.function), picture)
     mesh = grow(picture.mesh, scene.fur.spacing, scene.fur.combing, picture.subdivide, scene.fur.channels)
+    if picture.shadows:
+        mesh = with_shadows(mesh, picture.lights, scene.fur.length)
     return FurStudio(library, scene, picture, scene.fur, shading, bound.values, mesh)
+
+
+def lit_shading(shading: FurShading, picture: Picture) -> FurShading:
+    """The lighting of fur with room for a picture's lights, and with their shadows."""
+    return replace(shading, lights=max(LEAST_LIGHTS, len(picture.lights)), shadowed=picture.shadows)
 
 
 def open_drawing(studio: FurStudio, target: str, dialect: str | None = None) -> Drawing:

@@ -17,6 +17,7 @@ from conformance.picture.image import write_png
 from conformance.picture.mesh import Mesh, read_mesh
 from conformance.picture.scene import Picture, Scene, read_scene
 from conformance.picture.shade import Backend, Models, Shading, bind, shade
+from conformance.picture.sky import lit_by_sky
 from conformance.picture.tone import eight_bit, gradient, resolve
 from conformance.picture.visibility import Visibility, see
 
@@ -68,8 +69,8 @@ def set_up(path: Path, available: Models) -> Studio:
     scene = read_scene(path)
     if scene.picture is None:
         raise UserError(f"{path}: has no [render] table, which a picture needs")
-    shading = bind(scene, available)
-    return Studio(scene, scene.picture, shading, read_mesh(scene.picture.mesh, scene.picture.subdivide))
+    shading, picture = bind(scene, available), lit_by_sky(scene, scene.picture)
+    return Studio(scene, picture, shading, read_mesh(picture.mesh, picture.subdivide))
 
 
 def render(library: Library, scene: Path, target: str | None, output: Path) -> tuple[str, str]:

@@ -7,6 +7,7 @@ on it, where it bears one.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,8 @@ from conformance.picture.brush import Brush
 from conformance.picture.fur_settings import Fur, read_fur
 from conformance.picture.visibility import Camera
 
+MOST_LIGHTS = 64
+"""Lights of one kind."""
 TABLES = ("scene", "shade", "parameters", "view", "lights", "render", "fur")
 
 Triple = tuple[float, float, float]
@@ -46,9 +49,26 @@ class Light:
 
 
 @dataclass(frozen=True)
+class Sky:
+    """An environment map that lights a scene: a file in latitude and longitude, y up.
+
+    lights  how many directional lights stand for it
+    scale   factor of its light
+    """
+
+    map: Path
+    lights: int
+    scale: float
+
+
+@dataclass(frozen=True)
 class Picture:
     """What only a picture needs; sizes in pixels, lengths in units of the mesh, colours of the
-    background in sRGB."""
+    background in sRGB.
+
+    lights  those that the scene lists
+    sky     what lights the scene besides; None without an environment
+    """
 
     mesh: Path
     size: tuple[int, int]
@@ -60,6 +80,7 @@ class Picture:
     camera: Camera
     brush: Brush
     lights: tuple[Light, ...]
+    sky: Sky | None = None
 
 
 @dataclass(frozen=True)
@@ -90,7 +111,8 @@ def read_scene(path: Path) -> Scene:
     """Read a scene file; paths in it are relative to its own folder."""
     tables = read_tables(path, TABLES)
     scene, shade, view, lights = (tables[name] for name in ("scene", "shade", "view", "lights"))
-    picture = _picture(tables["render"]) if tables["render"].content else None
+    sky = _sky(tables)
+    picture = _picture(tables["render"], sky) if tables["render"].content else None
     result = Scene(
         path=path,
         name=scene.text("name", path.stem),
@@ -129,25 +151,38 @@ def _parameter(table: Table, key: str) -> Value | Range:
 
 def _lights(table: Table, picture: Picture | None) -> int:
     """The number of directional lights; what a picture cannot show is refused where there is one."""
-    directional = table.integer("directional", 0, 64, len(picture.lights) if picture else 0)
-    point = table.integer("point", 0, 64, 0)
-    environment = table.text("environment", "none")
+    directional = table.integer("directional", 0, MOST_LIGHTS, len(picture.lights) if picture else 0)
+    point = table.integer("point", 0, MOST_LIGHTS, 0)
     if picture is None:
         return directional
     if directional != len(picture.lights):
         raise table.error(
             "directional", f"is {directional}, but [[render.light]] lists {len(picture.lights)}"
         )
-    if point or environment != "none":
-        key = "point" if point else "environment"
-        raise table.error(key, "a picture is lit by directional lights only, listed as [[render.light]]")
+    if point:
+        raise table.error("point", "a picture is lit by directional lights and an environment only")
     return directional
 
 
-def _picture(render: Table) -> Picture:
+def _sky(tables: Mapping[str, Table]) -> Sky | None:
+    """The environment that [lights] names, with the factor that [render] gives it."""
+    table, render = tables["lights"], tables["render"]
+    name = table.text("environment", "none")
+    lights = table.integer("environment_lights", 1, MOST_LIGHTS, 8)
+    scale = render.number("environment_scale", 0.0, 1e4, 1.0)
+    if name != "none":
+        return Sky(table.path.parent / name, lights, scale)
+    if "environment_lights" in table:
+        raise table.error("environment_lights", 'needs a map: environment = "FILE"')
+    if "environment_scale" in render:
+        raise render.error("environment_scale", 'needs a map: [lights] environment = "FILE"')
+    return None
+
+
+def _picture(render: Table, sky: Sky | None) -> Picture:
     camera, brush, background = (render.table(name) for name in ("camera", "brush", "background"))
     lights = render.tables("light")
-    if not lights:
+    if not lights and sky is None:
         raise UserError(f"{render.path}: [[render.light]] is missing: a picture needs a light")
     picture = Picture(
         mesh=render.path.parent / render.text("mesh"),
@@ -165,6 +200,7 @@ def _picture(render: Table) -> Picture:
             length=brush.number("length", 1.0, 1e4, 40.0),
         ),
         lights=tuple(Light(t.direction("direction"), t.triple("colour", (1.0, 1.0, 1.0))) for t in lights),
+        sky=sky,
     )
     for table in (render, camera, brush, background, *lights):
         table.close()

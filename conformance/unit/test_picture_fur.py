@@ -236,7 +236,6 @@ WRONG: dict[str, tuple[str, str, str]] = {
         "[fur.surface]\ncos_dark = 0.5\ncos_lit = 0.1\n[fur.comb]",
         "[fur.surface] cos_dark: must be below cos_lit = 0.1, not 0.5",
     ),
-    "shadows": ("shadows = false", "", "[render] shadows: fur is drawn without cast shadows"),
     "size": ("supersample = 2", "supersample = 8\n", "[render] size times supersample may be 8192 at most"),
     "model": ('model = "fakefur"', 'model = "brushed"', '[parameters] "coat.density": brushed_shade has no'),
 }

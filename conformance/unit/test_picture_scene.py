@@ -62,7 +62,7 @@ WRONG = [
     ("exponent = 16.0", "exponent = { min = 9, max = 2 }", "min = 9 is above max = 2"),
     ("exponent = 16.0", "exponent = { mni = 9, max = 2 }", 'min: is missing; did you mean "mni"?'),
     ("directional = 1", "directional = 2", "[lights] directional: is 2, but [[render.light]] lists 1"),
-    ("directional = 1", "point = 1", "[lights] point: a picture is lit by directional lights only"),
+    ("directional = 1", "point = 1", "[lights] point: a picture is lit by directional lights and"),
     ("size = [768, 768]", "size = [768, 0]", "[render] size: must be [width, height] from 1 to 4096"),
     ("size = [768, 768]", "size = 768", "[render] size: must be [width, height] from 1 to 4096"),
     ("supersample = 2 ", "supersample = 2.5 ", "[render] supersample: must be a whole number from 1 to 8"),

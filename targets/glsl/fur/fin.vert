@@ -12,11 +12,13 @@ layout(location = 5) in float density_share;
 layout(location = 6) in vec3 face_a;
 layout(location = 7) in vec3 face_b;
 layout(location = 8) in float w;   // 0 at the skin, 1 at the tips
+layout(location = 9) in vec4 lit;   //? shadowed
 
 out vec3 at_position;
 out vec3 at_normal;
 out vec3 at_tangent;
 out vec2 at_share;
+out vec4 at_lit;   //? shadowed
 out vec3 at_uv;   // along the edge, row of hairs, height
 out float at_opacity;
 
@@ -28,6 +30,7 @@ void main()
     at_normal = normal;
     at_tangent = vair_shell_tangent(normal, w, comb, fur.force);
     at_share = vec2(length_share, density_share);
+    at_lit = lit;   //? shadowed
     at_uv = vec3(uv, w);
     at_opacity = fur.fin_opacity
         * vair_fin_opacity_silhouette(dot(v, face_a), dot(v, face_b), fur.fin_threshold);

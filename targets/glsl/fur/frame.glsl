@@ -17,7 +17,7 @@ layout(std140) uniform FurFrame {
     float cos_dark;
     float cos_lit;
     float fin_opacity;
-    vec4 light_direction[8];
-    vec4 light_colour[8];
+    vec4 light_direction[$lights];
+    vec4 light_colour[$lights];
 $material
 } fur;

@@ -7,6 +7,7 @@ in vec3 at_position;
 in vec3 at_normal;
 in vec3 at_tangent;
 in vec2 at_share;
+in vec4 at_lit;   // shares of lights that arrive   //? shadowed
 in vec2 at_uv;
 flat in vec2 at_layer;   // height, opacity
 

@@ -19,8 +19,8 @@ struct FurFrame {
     cos_dark: f32,
     cos_lit: f32,
     fin_opacity: f32,
-    light_direction: array<vec4<f32>, 8>,
-    light_colour: array<vec4<f32>, 8>,
+    light_direction: array<vec4<f32>, $lights>,
+    light_colour: array<vec4<f32>, $lights>,
 $material
 }
 
@@ -33,6 +33,7 @@ struct FurVertex {
     @location(3) uv: vec2<f32>,
     @location(4) length_share: f32,
     @location(5) density_share: f32,
+    @location(6) lit: vec4<f32>,   //? shadowed
 }
 
 struct FinVertex {
@@ -45,6 +46,7 @@ struct FinVertex {
     @location(6) face_a: vec3<f32>,
     @location(7) face_b: vec3<f32>,
     @location(8) w: f32,   // 0 at the skin, 1 at the tips
+    @location(9) lit: vec4<f32>,   //? shadowed
 }
 
 struct BasePoint {
@@ -53,6 +55,7 @@ struct BasePoint {
     @location(1) normal: vec3<f32>,
     @location(2) tangent: vec3<f32>,
     @location(3) share: vec2<f32>,
+    @location(4) lit: vec4<f32>,   // shares of lights that arrive   //? shadowed
 }
 
 struct ShellPoint {
@@ -63,6 +66,7 @@ struct ShellPoint {
     @location(3) share: vec2<f32>,
     @location(4) uv: vec2<f32>,
     @location(5) @interpolate(flat, either) layer: vec2<f32>,   // height, opacity
+    @location(6) lit: vec4<f32>,   // shares of lights that arrive   //? shadowed
 }
 
 struct FinPoint {
@@ -73,17 +77,22 @@ struct FinPoint {
     @location(3) share: vec2<f32>,
     @location(4) uv: vec3<f32>,   // along the edge, row of hairs, height
     @location(5) opacity: f32,
+    @location(6) lit: vec4<f32>,   // shares of lights that arrive   //? shadowed
 }
 
 // Light that a point of the coat sends to the eye, all lights together.
+// The first three lights have shadows of their own, all others share the fourth.   //? shadowed
 fn fur_radiance(
-    position: vec3<f32>, n: vec3<f32>, t: vec3<f32>, height: f32, length_share: f32, density_share: f32
+    position: vec3<f32>, n: vec3<f32>, t: vec3<f32>, height: f32, length_share: f32, density_share: f32   //? open
+    position: vec3<f32>, n: vec3<f32>, t: vec3<f32>, height: f32, length_share: f32, density_share: f32,   //? shadowed
+    lit: vec4<f32>   //? shadowed
 ) -> vec3<f32> {
     let v = vair_safe_normalize(fur.eye - position, n);
     var radiance = vec3<f32>(0.0);
     for (var k = 0u; k < fur.light_count; k++) {
         let l = fur.light_direction[k].xyz;
-        let light = fur.light_colour[k].xyz;
+        let light = fur.light_colour[k].xyz;   //? open
+        let light = lit[min(k, 3u)] * fur.light_colour[k].xyz;   //? shadowed
 $shading
         let surface = vair_fur_surface_attenuation(dot(n, l), fur.rho_surface, fur.cos_dark, fur.cos_lit);
         radiance += surface * reflected;
@@ -98,6 +107,7 @@ fn base_vertex(vertex: FurVertex) -> BasePoint {
     point.normal = vertex.normal;
     point.tangent = vair_shell_tangent(vertex.normal, 0.0, vertex.comb, fur.force);
     point.share = vec2<f32>(vertex.length_share, vertex.density_share);
+    point.lit = vertex.lit;   //? shadowed
     point.clip = fur.view_projection * vec4<f32>(vertex.position, 1.0);
     return point;
 }
@@ -106,7 +116,9 @@ fn base_vertex(vertex: FurVertex) -> BasePoint {
 fn base_fragment(point: BasePoint) -> @location(0) vec4<f32> {
     let n = vair_safe_normalize(point.normal, vec3<f32>(0.0, 0.0, 1.0));
     let t = vair_safe_normalize(point.tangent, n);
-    return vec4<f32>(fur_radiance(point.position, n, t, 0.0, point.share.x, point.share.y), 1.0);
+    let radiance = fur_radiance(point.position, n, t, 0.0, point.share.x, point.share.y);   //? open
+    let radiance = fur_radiance(point.position, n, t, 0.0, point.share.x, point.share.y, point.lit);   //? shadowed
+    return vec4<f32>(radiance, 1.0);
 }
 
 @vertex
@@ -122,6 +134,7 @@ fn shell_vertex(vertex: FurVertex, @builtin(instance_index) instance: u32) -> Sh
     point.normal = vertex.normal;
     point.tangent = vair_shell_tangent(vertex.normal, height, vertex.comb, fur.force);
     point.share = vec2<f32>(vertex.length_share, vertex.density_share);
+    point.lit = vertex.lit;   //? shadowed
     point.uv = vertex.uv;
     point.layer = vec2<f32>(
         height, vair_shell_alpha_resample(fur.opacity, fur.authored_layers, blended)
@@ -141,7 +154,9 @@ fn shell_fragment(point: ShellPoint) -> @location(0) vec4<f32> {
     }
     let n = vair_safe_normalize(point.normal, vec3<f32>(0.0, 0.0, 1.0));
     let t = vair_safe_normalize(point.tangent, n);
-    return vec4<f32>(fur_radiance(point.position, n, t, height, point.share.x, point.share.y), alpha);
+    let radiance = fur_radiance(point.position, n, t, height, point.share.x, point.share.y);   //? open
+    let radiance = fur_radiance(point.position, n, t, height, point.share.x, point.share.y, point.lit);   //? shadowed
+    return vec4<f32>(radiance, alpha);
 }
 
 @vertex
@@ -155,6 +170,7 @@ fn fin_vertex(vertex: FinVertex) -> FinPoint {
     point.normal = vertex.normal;
     point.tangent = vair_shell_tangent(vertex.normal, vertex.w, vertex.comb, fur.force);
     point.share = vec2<f32>(vertex.length_share, vertex.density_share);
+    point.lit = vertex.lit;   //? shadowed
     point.uv = vec3<f32>(vertex.uv, vertex.w);
     point.opacity = fur.fin_opacity
         * vair_fin_opacity_silhouette(dot(v, vertex.face_a), dot(v, vertex.face_b), fur.fin_threshold);
@@ -176,5 +192,7 @@ fn fin_fragment(point: FinPoint) -> @location(0) vec4<f32> {
     }
     let n = vair_safe_normalize(point.normal, vec3<f32>(0.0, 0.0, 1.0));
     let t = vair_safe_normalize(point.tangent, n);
-    return vec4<f32>(fur_radiance(point.position, n, t, height, point.share.x, point.share.y), alpha);
+    let radiance = fur_radiance(point.position, n, t, height, point.share.x, point.share.y);   //? open
+    let radiance = fur_radiance(point.position, n, t, height, point.share.x, point.share.y, point.lit);   //? shadowed
+    return vec4<f32>(radiance, alpha);
 }
