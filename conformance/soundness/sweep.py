@@ -29,8 +29,14 @@ MOST_HARD = 20_000
 """Points of one family at most: each stored point with each parameter that it fits comes first."""
 PRECISE = 4096
 """Lanes of a batch that are undecided under some table and evaluated in 50 digits; others stay undecided."""
-DEPENDENT = frozenset({"sqrt", "inverse_sqrt", "length", "normalize", "dot", "cross"})
-"""Operations whose promise may lean on each other and on division."""
+LEANS_ON = {
+    "sqrt": ("inverse_sqrt", "/"),
+    "dot": ("*", "+"),
+    "cross": ("*", "-"),
+    "length": ("sqrt", "dot"),
+    "normalize": ("length", "inverse_sqrt", "dot", "*", "/"),
+}
+"""Operations in the formulas from which a table may inherit the promise of another."""
 INTERVALS = Path(__file__).parents[2] / "codegen/intervals"
 
 
@@ -73,15 +79,17 @@ class Swept:
 
 
 def operations(library: Library, name: str) -> frozenset[str]:
-    """Operations of the registry that a function and all it calls may use."""
-    found = set()
+    """Operations of the registry on whose promises the intervals of a function may depend."""
+    found: set[str] = set()
     for function in library.select([name]).functions:
         for e in ir.expressions(function.body):
             if isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
                 found.add(e.op)
             elif isinstance(e, ir.Convert):
                 found.add("cast")
-    return frozenset(found | DEPENDENT | {"/"} if found & DEPENDENT else found)
+    while further := {used for op in found for used in LEANS_ON.get(op, ())} - found:
+        found |= further
+    return frozenset(found)
 
 
 def different(library: Library, name: str) -> dict[str, tuple[Table, list[str]]]:
@@ -144,6 +152,6 @@ def sweep(library: Library, name: str, points: int) -> Swept:
 def intervals_hash() -> str:
     """Of everything that makes intervals: what was shown of others is stale."""
     digest = hashlib.sha256()
-    for path in sorted([*INTERVALS.glob("*.py"), *INTERVALS.glob("tables/*.toml")]):
+    for path in sorted([*INTERVALS.rglob("*.py"), *INTERVALS.rglob("*.toml")]):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

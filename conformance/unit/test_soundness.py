@@ -10,22 +10,24 @@ The whole sweep is `python -m conformance.soundness`; the nightly run does what 
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
-from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
 
 from codegen.evaluate import evaluate
-from codegen.intervals import Table, load_table, permitted
+from codegen.intervals import TABLES, Table, load_table, permitted
 from codegen.library import load_library
+from codegen.ops import BUILTINS
+from conformance import cases
 from conformance.soundness import record
 from conformance.soundness import sweep as sweeping
 from conformance.soundness.__main__ import POINTS
 from conformance.soundness.enclosure import Enclosure
 from conformance.soundness.held import either_way, held, scalars
-from conformance.soundness.sweep import different, sweep
+from conformance.soundness.sweep import LEANS_ON, different, sweep
 from conformance.soundness.walk import enclosed, leaves
 from conformance.unit.support.sources import library_of
 from conformance.unit.support.tight import TOO_TIGHT, tightened
@@ -111,19 +113,33 @@ def test_too_tight_a_row_is_caught(text: str, tmp_path: Path) -> None:
     assert outside(tightened(table, text)) > FEW // 2
 
 
-def test_tables_that_promise_the_same_are_swept_once() -> None:
-    groups = different(LIBRARY, "hammersley")
-    assert sorted(name for _, names in groups.values() for name in names) == sorted(
+@pytest.mark.parametrize(
+    ("name", "count"), [("hammersley", 3), ("fakefur_shade", 3), ("octahedral_decode", 5)]
+)
+def test_tables_that_promise_the_same_are_swept_once(name: str, count: int) -> None:
+    groups = different(LIBRARY, name)
+    assert len(groups) == count
+    assert sorted(table for _, names in groups.values() for table in names) == sorted(
         ["wgsl", "vulkan", "glsl", "glsl_es", "opencl", "opencl_relaxed"]
     )
-    inputs = {"i": np.arange(50, dtype=np.uint32), "n": np.full(50, 64, np.uint32)}
-    inputs = {p.name: inputs[p.name] for p in LIBRARY.function("hammersley").parameters}
+    inputs = cases.draw(LIBRARY.function(name), cases.UNIFORM, 50, SEED)
     for first, names in groups.values():
-        for name in names[1:]:
-            other: Any = permitted(LIBRARY, "hammersley", inputs, either_way(load_table(name)))
-            found: Any = permitted(LIBRARY, "hammersley", inputs, first)
-            for a, b in zip(scalars(found.low), scalars(other.low), strict=True):
-                assert np.array_equal(a, b)
+        found = permitted(LIBRARY, name, inputs, first)
+        for other in names[1:]:
+            same = permitted(LIBRARY, name, inputs, either_way(load_table(other)))
+            assert np.array_equal(found.codes, same.codes)
+            for ends, others in ((found.low, same.low), (found.high, same.high)):
+                for a, b in zip(scalars(ends), scalars(others), strict=True):
+                    assert np.array_equal(a, b)
+
+
+def test_inherited_promises_lean_on_what_their_formulas_name() -> None:
+    """The functions of a formula, and division where it has a stroke."""
+    for table in map(load_table, TABLES):
+        for operation, row in table.rows.items():
+            formula = getattr(row.accuracy, "formula", "")
+            named = {op for op in BUILTINS if re.search(rf"\b{op}\(", formula)} | {"/"} & set(formula)
+            assert named <= set(LEANS_ON.get(operation, ())), f"{table.name}: {operation} = {formula}"
 
 
 def test_record_passes() -> None:
