@@ -15,7 +15,7 @@ from codegen.errors import UserError
 from codegen.library import Library, load_library
 from codegen.vendor.install import install, read_old_lock
 from codegen.vendor.lock import NAME
-from codegen.vendor.options import Options, choose_dialects
+from codegen.vendor.options import SCENE_ALONE, Options, choose_dialects
 from codegen.vendor.plan import Plan, plan_functions
 from codegen.vendor.scene_plan import plan_scene, scene_dialects
 
@@ -48,6 +48,8 @@ def command(
     Without further options an existing folder keeps those of its lock. All functions if none is named; the
     default dialect of each target if none is named. Files that were edited are refused, not overwritten.
     """
+    if scene is not None and (functions or per_function):
+        raise UserError(SCENE_ALONE)
     library = load_library()
     old = read_old_lock(folder, force=force)
     given = any((functions, scene, targets, dialects, prefix is not None, per_function))

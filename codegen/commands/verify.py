@@ -78,8 +78,10 @@ def _known(lock: Lock, library: Library) -> Lock:
 def _by_dialect(lock: Lock, files: dict[str, bytes]) -> dict[str, list[str]]:
     """Texts by dialect, without what is missing."""
     found: dict[str, list[str]] = {name: [] for name in lock.options.dialects}
-    for name in sorted(files):
-        found[dialect_of(lock.options, name)].append(files[name].decode("utf-8", "replace"))
+    for name in sorted(lock.files):
+        texts = found[dialect_of(lock.options, name)]
+        if name in files:
+            texts.append(files[name].decode("utf-8", "replace"))
     return found
 
 

@@ -16,6 +16,9 @@ from codegen.vendor.lock import Lock, Promise
 _WORD = re.compile(r"\w+")
 _PRECISION = re.compile(r"\b(?:highp|mediump) ")
 
+FLOOR = 1e-30
+"""Below it values are as good as 0, and on some drivers are."""
+
 Code = tuple[tuple[str, ...], ...]
 """Definitions without comments, dependencies first."""
 
@@ -26,7 +29,7 @@ class Difference:
 
     points        inputs that both took
     absolute      largest difference of a component of the result
-    relative      largest difference divided by the larger of the two values
+    relative      largest difference divided by the larger of the two values, which counts as FLOOR at least
     where         the inputs of the largest absolute difference, words in hex
     non_finite    results that were not finite: old, new
     """
@@ -69,10 +72,10 @@ def changes(
 ) -> list[Change]:
     """Every function that an update would change, by name.
 
-    old, new  texts by dialect
+    old, new  texts by dialect; one whose files are missing is left out
     compare   executes two codes; asked once for codes that differ in precision qualifiers only
     """
-    texts = {d: (_by_name(old[d]), _by_name(new.get(d, ()))) for d in old}
+    texts = {d: (_by_name(old[d]), _by_name(new.get(d, ()))) for d in old if old[d]}
     return [
         change
         for name in sorted({*old_lock.functions, *new_lock.functions})

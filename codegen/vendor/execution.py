@@ -17,7 +17,7 @@ from codegen.execute import on_device, unflatten
 from codegen.ir.types import leaves
 from codegen.kernels import kernel_body
 from codegen.library import Library
-from codegen.vendor.changes import Code, Difference
+from codegen.vendor.changes import FLOOR, Code, Difference
 
 Inputs = Mapping[str, Any]
 _OWN_NAME = re.compile(rf"\b{DEFAULT_PREFIX}(?=\w)")
@@ -93,7 +93,7 @@ class Execution:
         finite = np.isfinite(before) & np.isfinite(after)
         apart = np.where(finite, np.abs(np.where(finite, after, 0.0) - np.where(finite, before, 0.0)), 0.0)
         size = np.where(finite, np.maximum(np.abs(before), np.abs(after)), 1.0)
-        relative = np.divide(apart, size, out=np.zeros_like(apart), where=size > 0.0)
+        relative = apart / np.maximum(size, FLOOR)
         lane = int(apart.max(axis=0).argmax())
         broken = [int((~np.isfinite(found)).any(axis=0).sum()) for found in (before, after)]
         return Difference(

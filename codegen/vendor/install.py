@@ -75,7 +75,8 @@ def _install(folder: Path, plan: Plan, force: bool) -> list[str]:
             shutil.rmtree(stage)
             return changed
         shutil.rmtree(stage)
-    os.rename(_staged(folder, files, folder), folder / UNFINISHED)
+    beside = os.access(folder.parent, os.W_OK) and not os.path.ismount(folder)
+    os.rename(_staged(folder, files, folder.parent if beside else folder), folder / UNFINISHED)
     _finish(folder)
     return changed
 

@@ -12,6 +12,7 @@ from codegen.errors import UserError, unknown
 from codegen.names import check_prefix
 
 ALL = "all"
+SCENE_ALONE = "a scene has one function of its own; leave out --function and --per-function"
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Options:
     def __post_init__(self) -> None:
         check_prefix(self.prefix)
         if self.scene and (self.functions or self.per_function):
-            raise UserError("a scene has one function of its own; leave out --function and --per-function")
+            raise UserError(SCENE_ALONE)
 
     def found_dialects(self) -> list[Dialect]:
         """The dialects; raises UserError for one that there is not."""
