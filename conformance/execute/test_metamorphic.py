@@ -14,6 +14,7 @@ and so are results that only a rearrangement of sums explains. A damaged rewriti
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
@@ -26,22 +27,27 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import F32
 from codegen.ir.verify import verify_selection
 from codegen.library import Library, load_library
+from conformance.executor import Here, Processes, Result
+from conformance.executor.state import State
 from conformance.fuzz.choices import Choice
 from conformance.metamorphic import inputs, source
+from conformance.metamorphic.__main__ import LANES as NIGHTLY_LANES
+from conformance.metamorphic.__main__ import RESULTS, STATE
 from conformance.metamorphic.engine import Report, run_pairs
 from conformance.metamorphic.pairs import Pair, draw, input_pair, source_pair
 from conformance.metamorphic.plan import input_pairs, library_pairs, program_pairs, random_programs
 from conformance.metamorphic.relation import Changed, SourceRelation
 from conformance.metamorphic.source.tools import changed_body
-from targets import TimedRuntime
+from conformance.metamorphic.task import PROGRAMS, pieces, run_jobs
+from targets import TARGETS, TargetUnavailable, TimedRuntime, probe
 
 LIBRARY = load_library()
-LANES, NIGHTLY_LANES = 32, 256
+LANES = 32
 EACH = 2
 """Functions and programs for each relation in a normal run."""
 FORMED = 5
 """Functions for each relation whose rewriting is only verified, not run."""
-PROGRAMS, NIGHTLY_PROGRAMS = 30, 200
+FEW_PROGRAMS = 30
 LEAST_RELATIONS = 12
 LEAST_NIGHTLY = 100_000
 
@@ -64,26 +70,88 @@ def test_rewritten_functions_agree(runtime: TimedRuntime) -> None:
 
 
 def test_rewritten_programs_agree(runtime: TimedRuntime, tmp_path: Path) -> None:
-    library, cases = random_programs(tmp_path, PROGRAMS)
+    library, cases = random_programs(tmp_path, FEW_PROGRAMS)
     report = check(library, program_pairs(library, cases, LANES, EACH), runtime, LANES)
     assert len(report.counts) >= LEAST_RELATIONS
 
 
+def targets_here() -> list[str]:
+    found = [name for name in TARGETS if not isinstance(probe(name), TargetUnavailable)]
+    if not found:
+        pytest.skip("no target is here")
+    return found
+
+
+def test_jobs_run_every_kind_of_pair(tmp_path: Path) -> None:
+    """On one target; what is done once is not done again."""
+    few = 8
+    whole = pieces(LIBRARY, targets_here()[:1], few)
+    kinds = {
+        "inputs": inputs.RELATIONS[0].name,
+        "library": source.RELATIONS[0].name,
+        "programs": source.RELATIONS[1].name,
+    }
+    jobs = [
+        replace(next(job for job in whole if job.function == f"{kind}/{name}"), stop=3)
+        for kind, name in kinds.items()
+    ]
+    report, undone = run_jobs(Here(), jobs, State(tmp_path / "state.jsonl"))
+    assert not undone
+    assert not report.failures
+    assert set(report.counts) == set(kinds.values())
+    assert all(count.pairs in (few, 2 * few, 3 * few) for count in report.counts.values())
+    again, undone = run_jobs(Here(), jobs, State(tmp_path / "state.jsonl"), never_asked)
+    assert again == report
+
+
+def never_asked(result: Result) -> None:
+    assert result.data["counts"], "done before, so told with its data"
+
+
+def test_jobs_hold_every_subject_once() -> None:
+    told: dict[str, list[int]] = {}
+    for job in pieces(LIBRARY, ["glsl", "wgsl"], 8):
+        told.setdefault(job.function, []).extend(range(job.start, job.stop))
+        assert job.targets == ("glsl", "wgsl")
+    assert len(told) == len(inputs.RELATIONS) + 2 * len(source.RELATIONS)
+    for what, found in told.items():
+        kind, name = what.split("/")
+        related = {r.name: len(r.functions) for r in inputs.RELATIONS}
+        count = {"inputs": related.get(name, 0), "library": len(LIBRARY.public), "programs": PROGRAMS}[kind]
+        assert found == list(range(count)), what
+
+
+def test_a_job_that_is_not_done_is_told() -> None:
+    (job,) = [job for job in pieces(LIBRARY, ["metal"], 8) if job.function == "inputs/quarter_turn"]
+    report, undone = run_jobs(Here(), [job])
+    assert undone == [f"{job.identity}: there is no target metal"]
+    assert not report.counts
+
+
 @pytest.mark.nightly
 @pytest.mark.timeout(2 * 3600)
-def test_all_related_pairs_agree(runtime: TimedRuntime, tmp_path: Path) -> None:
-    library, cases = random_programs(tmp_path, NIGHTLY_PROGRAMS)
-    n = NIGHTLY_LANES
-    reports = [
-        check(LIBRARY, input_pairs(LIBRARY, n, None), runtime, n),
-        check(LIBRARY, library_pairs(LIBRARY, n, None), runtime, n),
-        check(library, program_pairs(library, cases, n, None), runtime, n),
-    ]
-    assert sum(r.pairs for r in reports) >= LEAST_NIGHTLY
+def test_all_related_pairs_agree() -> None:
+    """On two processes."""
+    jobs = pieces(LIBRARY, targets_here(), NIGHTLY_LANES)
+    report, undone = run_jobs(Processes(2), jobs, State(STATE))
+    print("\n".join(report.lines()))
+    assert not undone
+    assert not report.failures, "\n".join(report.failures[:5])
+    assert report.pairs >= LEAST_NIGHTLY
+
+
+def test_what_is_recorded_agrees() -> None:
+    if not RESULTS.exists():
+        pytest.skip("python -m conformance.metamorphic writes it")
+    recorded = json.loads(RESULTS.read_text(encoding="utf-8"))
+    assert not recorded["failures"]
+    assert recorded["pairs"] >= LEAST_NIGHTLY
+    names = {r.name for r in inputs.RELATIONS} | {r.name for r in source.RELATIONS}
+    assert set(recorded["relations"]) == names
 
 
 def test_every_rewriting_makes_well_formed_programs(tmp_path: Path) -> None:
-    library, cases = random_programs(tmp_path, PROGRAMS)
+    library, cases = random_programs(tmp_path, FEW_PROGRAMS)
     pairs = [*library_pairs(LIBRARY, 4, FORMED), *program_pairs(library, cases, 4, None)]
     for pair in pairs:
         base = library if pair.subject.startswith("case_") else LIBRARY

@@ -6,11 +6,13 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
+from codegen.ir.nodes import Function
 from codegen.library import Library
 from conformance.fuzz.case import Case, draw_inputs, make_case
 from conformance.fuzz.source import write
 from conformance.metamorphic import inputs, source
 from conformance.metamorphic.pairs import Pair, draw, input_pair, source_pair
+from conformance.metamorphic.relation import SourceRelation
 
 SEED = 1
 PROGRAM_SEED = 7
@@ -34,10 +36,23 @@ def library_pairs(library: Library, lanes: int, each: int | None) -> Iterator[Pa
         for function in (*functions[first:], *functions[:first]):
             if each is not None and made == each:
                 break
-            pair = source_pair(relation, function, library, partial(draw, function, lanes, SEED + k), lanes)
+            pair = library_pair(library, relation, function, lanes)
             if pair is not None:
                 made += 1
                 yield pair
+
+
+def library_pair(library: Library, relation: SourceRelation, function: Function, lanes: int) -> Pair | None:
+    """The rewriting of a library function; None where there is nothing to rewrite."""
+    seed = SEED + source.RELATIONS.index(relation)
+    return source_pair(relation, function, library, partial(draw, function, lanes, seed), lanes)
+
+
+def program_pair(library: Library, relation: SourceRelation, case: Case, lanes: int) -> Pair | None:
+    """The rewriting of a random program; None where there is nothing to rewrite."""
+    function = library.function(case.entry)
+    drawn = partial(draw_inputs, case, function.parameters, lanes)
+    return source_pair(relation, function, library, drawn, lanes)
 
 
 def random_programs(folder: Path, count: int) -> tuple[Library, list[Case]]:
@@ -54,10 +69,7 @@ def program_pairs(library: Library, cases: Sequence[Case], lanes: int, each: int
         for case in (*cases[first:], *cases[:first]):
             if each is not None and made == each:
                 break
-            function = library.function(case.entry)
-            pair = source_pair(
-                relation, function, library, partial(draw_inputs, case, function.parameters, lanes), lanes
-            )
+            pair = program_pair(library, relation, case, lanes)
             if pair is not None:
                 made += 1
                 yield pair

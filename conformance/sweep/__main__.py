@@ -16,10 +16,10 @@ from codegen.errors import UserError, unknown
 from codegen.library import load_library
 from conformance.command_line import run
 from conformance.executor import Job, Result, available, open_executor
+from conformance.executor.state import State
 from conformance.sweep.plan import pieces, short
 from conformance.sweep.positions import Positions, order_of, sweepable
 from conformance.sweep.record import RESULTS, Entry, keep, passed
-from conformance.sweep.state import State
 from conformance.sweep.sweep import sweep
 
 STATE = Path("build/sweep/state.jsonl")

@@ -8,10 +8,10 @@ from dataclasses import replace
 
 from codegen.library import Library
 from conformance.executor import Executor, Job, Result
+from conformance.executor.state import State
 from conformance.sweep.positions import Positions
 from conformance.sweep.record import Entry, joined
 from conformance.sweep.source import source_of
-from conformance.sweep.state import State
 from conformance.sweep.task import TOGETHER
 
 

@@ -19,7 +19,7 @@ from conformance.sweep import judge, record, task
 from conformance.sweep.plan import PIECE, critical, pieces
 from conformance.sweep.positions import Positions, order_of, positions, sweepable
 from conformance.sweep.source import hash_of, source_of
-from conformance.sweep.state import State
+from conformance.executor.state import State
 from conformance.sweep.sweep import sweep
 from conformance.sweep.task import BLOCK, CHUNK, TASK, TOGETHER, run, run_together
 

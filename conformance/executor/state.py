@@ -1,4 +1,4 @@
-"""Pieces of a sweep that are done, one a line, so that a sweep that was interrupted goes on where it was."""
+"""Pieces of long work that are done, one a line, so that what was interrupted goes on where it was."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from conformance.executor import Job, Result
+from conformance.executor.jobs import Job, Result
 
 
 class State:
@@ -22,7 +22,7 @@ class State:
             try:
                 entry = json.loads(line)
             except json.JSONDecodeError:
-                continue  # the line that was being written when the sweep was interrupted
+                continue  # the line that was being written when the work was interrupted
             self._done[entry["source"], entry["job"]] = entry["data"]
 
     def find(self, job: Job, source: str) -> dict[str, Any] | None:
