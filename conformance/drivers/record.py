@@ -25,6 +25,7 @@ from conformance.check.result import FunctionResult
 from conformance.drivers.known import excess
 from conformance.drivers.matrix import FORMAT
 from conformance.drivers.modes import Mode
+from conformance.sweep.source import code_of
 from targets import Device
 from targets.drivers import Driver
 
@@ -98,11 +99,11 @@ def accepted(f: Mapping[str, Any]) -> bool:
 
 @functools.cache
 def fingerprint(library: Library, name: str, target: str, mode: Mode) -> str:
-    """Hash of what a verdict depends on: the emitted program, bounds, accuracy table, number of inputs."""
+    """Hash of what a verdict depends on: the emitted code, bounds, accuracy table, number of inputs."""
     table = load_table(mode.table or DEFAULT_TABLES[target])
     parts = [
         library.select([name]).source_hash,
-        kernel(library, name, target),
+        *code_of(kernel(library, name, target)),
         repr(library.bounds.get(name)),
         repr(table),
         repr(mode),

@@ -26,5 +26,9 @@ def source_of(library: Library, name: str, target: str) -> str:
 
 def hash_of(program: str, bounds: Iterable[str] = ()) -> str:
     """Hash of the lines of code of a program, and of further lines."""
-    lines = [line for line in program.splitlines() if not NO_CODE.match(line.strip())]
-    return hashlib.sha256("\n".join([*lines, *bounds]).encode()).hexdigest()[:16]
+    return hashlib.sha256("\n".join([*code_of(program), *bounds]).encode()).hexdigest()[:16]
+
+
+def code_of(program: str) -> list[str]:
+    """The lines of code of a program."""
+    return [line for line in program.splitlines() if not NO_CODE.match(line.strip())]
