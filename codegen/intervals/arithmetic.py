@@ -76,6 +76,8 @@ def _below_normal(context: Context, low: Array, high: Array) -> tuple[Array, Arr
 def from_input(context: Context, given: Array) -> Range:
     """Exact float32 inputs; one below the normal numbers may be read as 0."""
     a = given.astype(np.float64)
+    if numbers.usual(found := numbers.reach(a, a)):
+        return Range(a, a, None, None, found)
     small = (np.abs(a) < SMALLEST) & (a != 0.0)
     if context.table.flush and small.any():
         return Range(
@@ -148,6 +150,8 @@ def subtract(context: Context, a: Range, b: Range) -> Range:
     if a is b and a.cause is None:
         zero = np.zeros(1)
         return Range(zero, zero)
+    if (found := bulk.subtract(context, a, b)) is not None:
+        return checked(context, found, first(a.cause, b.cause))
     return add(context, a, negate(b))
 
 
@@ -298,20 +302,20 @@ def within_ulp(
 
 def smaller(a: Range, b: Range) -> Range:
     """min(a, b); anything where either may be anything, since NaN may be among it."""
-    return _ordered(a, b, np.minimum(a.low, b.low), np.minimum(a.high, b.high))
+    return _ordered(np.minimum, a, b)
 
 
 def larger(a: Range, b: Range) -> Range:
     """max(a, b); anything where either may be anything, since NaN may be among it."""
-    return _ordered(a, b, np.maximum(a.low, b.low), np.maximum(a.high, b.high))
+    return _ordered(np.maximum, a, b)
 
 
-def _ordered(a: Range, b: Range, low: Array, high: Array) -> Range:
+def _ordered(order: np.ufunc, a: Range, b: Range) -> Range:
     codes = first(a.cause, b.cause)
+    low = order(a.low, b.low)
+    high = low if a.is_point and b.is_point else order(a.high, b.high)
     if codes is not None:
         low, high = np.where(codes > 0, -np.inf, low), np.where(codes > 0, np.inf, high)
-    elif a.is_point and b.is_point:
-        high = low
     return Range(low, high, codes)
 
 

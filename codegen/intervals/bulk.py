@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from codegen.intervals.accuracy import Row, Ulp
-from codegen.intervals.compiled import ends, kernels, wanted
+from codegen.intervals.compiled import ends, kernels
 from codegen.intervals.context import Context
 from codegen.intervals.numbers import Array
 from codegen.intervals.values import Range
@@ -20,10 +20,11 @@ _NEVER_NEAR, _NEVER_FAR = 2.0**-1000, float("inf")
 
 def _lanes(context: Context, *values: Range) -> int:
     """The number of lanes of a result that a compiled loop gives; 0 for none."""
-    if not (wanted(context.lanes) and context.table.flush):
-        return 0
-    count = max(len(v.low) for v in values)
-    return count if count > 1 else 0
+    if context.loops:
+        for value in values:
+            if len(value.low) > 1:
+                return len(value.low)
+    return 0
 
 
 def _ends(x: Range) -> tuple[Any, Any]:
@@ -44,14 +45,29 @@ def add(context: Context, a: Range, b: Range) -> Found | None:
     if context.table.rounding == "either":
         low, high, look = kernels().add(*_ends(a), *_ends(b), count)
         return low, high, look, None
-    if a.is_point and b.is_point:
+    products = [x for x in (a, b) if context.table.fused and x.product is not None]
+    if not products:
+        if a.is_point and b.is_point:
+            near, look = kernels().add_points(_ends(a)[0], _ends(b)[0], count)
+            return None if look else (near, near, 0, None)
+        low, high, look = kernels().add_nearest(*_ends(a), *_ends(b), count)
+        return low, high, look, None
+    of, other = (a, b) if products[0] is a else (b, a)
+    assert of.product is not None
+    low, high, look = kernels().add_fused(*_ends(of), *_ends(other), *ends(*of.product), count)
+    if len(products) > 1:
+        assert other.product is not None
+        look = kernels().fuse(low, high, *_ends(of), *ends(*other.product), count)
+    return low, high, look, None
+
+
+def subtract(context: Context, a: Range, b: Range) -> Found | None:
+    """a - b; None as well where it is the sum with -b that has a loop."""
+    count = _lanes(context, a, b)
+    if not count or context.table.rounding != "either":
         return None
-    low, high = kernels().add_nearest(*_ends(a), *_ends(b), count)
-    if context.table.fused:
-        for of, other in ((a, b), (b, a)):
-            if of.product is not None:
-                kernels().fuse(low, high, *ends(*of.product), *_ends(other), count)
-    return low, high, kernels().settle(low, high, count), None
+    low, high, look = kernels().subtract(*_ends(a), *_ends(b), count)
+    return low, high, look, None
 
 
 def multiply(context: Context, a: Range, b: Range) -> Found | None:
@@ -60,9 +76,12 @@ def multiply(context: Context, a: Range, b: Range) -> Found | None:
     if not count:
         return None
     if context.table.rounding == "nearest":
-        if a is b or (a.is_point and b.is_point):
-            return None
         a, b = _shared_last(a, b)
+        if a.is_point and b.is_point:
+            exact, near, look = kernels().multiply_points(_ends(a)[0], _ends(b)[0], count)
+            return None if look else (near, near, 0, (exact, exact) if context.table.fused else None)
+        if a is b:
+            return None
         least, most, low, high, look = kernels().multiply_nearest(*_ends(a), *_ends(b), count)
         return low, high, look, (least, most) if context.table.fused else None
     if a is b:
@@ -71,6 +90,20 @@ def multiply(context: Context, a: Range, b: Range) -> Found | None:
         a, b = _shared_last(a, b)
         low, high, look = kernels().multiply(*_ends(a), *_ends(b), count)
     return low, high, look, None
+
+
+_ORDERS = {"<": ("less", False), "<=": ("at_most", False), ">": ("at_most", True), ">=": ("less", True)}
+"""Comparison -> the loop that decides it, and whether that decides the opposite."""
+
+
+def compare(context: Context, op: str, a: Range, b: Range) -> tuple[Array, Array, int] | None:
+    """Whether a comparison of two different values may hold, may fail, and may do both in a lane."""
+    count = _lanes(context, a, b)
+    if not count or a is b or op not in _ORDERS:
+        return None
+    name, opposite = _ORDERS[op]
+    true, false, undecided = getattr(kernels(), name)(*_ends(a), *_ends(b), count)
+    return (false, true, undecided) if opposite else (true, false, undecided)
 
 
 def divide(context: Context, row: Row, x: Range, y: Range) -> Found | None:
@@ -134,3 +167,19 @@ def sum_of_three(context: Context, terms: list[Range]) -> Range | None:
     a, b, c = terms
     low, high, look = kernels().sum_of_three(a.low, a.high, b.low, b.high, c.low, c.high, count)
     return None if look else Range(low, high)
+
+
+def scaled_dot(
+    context: Context, a: tuple[Range, ...], b: tuple[Range, ...], share: float, epsilon: float
+) -> Found | None:
+    """The inner product of two vectors of three, off by a share of the largest square of any component."""
+    parts = (*a, *b)
+    same = [x is y for x, y in zip(a, b, strict=True)]
+    if len(a) != 3 or any(same) != all(same) or any(len(x.low) == 1 for x in parts):
+        return None
+    count = _lanes(context, *parts)
+    if not count:
+        return None
+    every = [end for x in parts for end in (x.low, x.high)]
+    low, high, look = kernels().scaled_dot(*every, all(same), share, epsilon, count)
+    return low, high, look, None

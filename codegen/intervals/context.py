@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from codegen.intervals.causes import Cause, CauseBook, Codes, mark
+from codegen.intervals.compiled import wanted
+from codegen.intervals.memory import Memory
 from codegen.intervals.numbers import Array
 from codegen.intervals.tables import Table
+from codegen.intervals.values import Single
+from codegen.ir.nodes import Const
 
 MOST_WAYS = 24
 """A fork with more ways than this is followed by its hull only."""
@@ -30,15 +33,27 @@ class Ways:
 
     def at(self, fork: int) -> Array | None:
         """The way of each lane at a fork, -1 where it is free; None where all are."""
-        hit = self.forks == fork
-        if not hit.any():
-            return None
-        return np.asarray(np.where(hit, self.ways, -1).max(axis=1))
+        taken: Array | None = None
+        for forks, ways in zip(self.forks.T, self.ways.T, strict=True):
+            hit = forks == fork
+            if hit.any():
+                told = np.where(hit, ways, np.int32(-1))
+                taken = told if taken is None else np.maximum(taken, told)
+        return taken
+
+    def then(self, index: Array, fork: Array, way: Array) -> Ways:
+        """These lanes, taking one way more."""
+        return Ways(np.column_stack([self.forks[index], fork]), np.column_stack([self.ways[index], way]))
 
 
 @dataclass
 class Context:
-    """State of one evaluation over some lanes."""
+    """State of one evaluation over some lanes.
+
+    constants, literals  literals by their value, and by the identity of their node
+    loops   whether operations run as compiled loops, see codegen.intervals.bulk
+    memory  results by what they were computed from
+    """
 
     table: Table
     book: CauseBook
@@ -48,10 +63,13 @@ class Context:
     line: int = 0
     operation: str = ""
     forks: int = 0
-    memo: dict[Hashable, Any] = field(default_factory=dict)
-    kept: list[Any] = field(default_factory=list)
+    constants: dict[Hashable, Single] = field(default_factory=dict)
+    literals: dict[int, tuple[Const, Single]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self.loops = self.table.flush and wanted(self.lanes)
+        # A way narrows values that others were computed from: there the first result has to be kept.
+        self.memory = Memory(forgets=self.ways is None)
         self.first_fork = np.full(self.lanes, -1, np.int32)
         self.width = np.zeros(self.lanes, np.int32)
 
@@ -61,6 +79,10 @@ class Context:
             return codes
         cause = Cause(self.function, self.line, self.operation, operand, reason)
         return mark(codes, where, self.book.code(cause))
+
+    def decided(self) -> None:
+        """A fork that no lane has."""
+        self.forks += 1
 
     def fork(self, widths: Array) -> Array | None:
         """A fork with so many ways per lane, (N,) or (1,), 1: none. Gives the way each lane takes; -1: all.

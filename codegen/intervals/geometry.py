@@ -10,6 +10,7 @@ from codegen.intervals import bulk, numbers
 from codegen.intervals.accuracy import Inherited, Scaled, Ulp
 from codegen.intervals.arithmetic import (
     add,
+    checked,
     divide,
     exact_product,
     multiply,
@@ -37,6 +38,9 @@ def dot(context: Context, a: Ranges, b: Ranges) -> Range:
     if isinstance(accuracy, Inherited):
         return sum_in_any_order(context, [multiply(context, x, y) for x, y in zip(a, b, strict=True)])
     assert isinstance(accuracy, Scaled)
+    share = accuracy.epsilons + accuracy.per_component * len(a)
+    if (found := bulk.scaled_dot(context, a, b, share, _EPSILON)) is not None:
+        return checked(context, found, _causes((*a, *b)))
     low, high = _exact_sum([exact_product(x, y) for x, y in zip(a, b, strict=True)])
     slack = _scaled(accuracy, (*a, *b), len(a))
     low, high = numbers.up(low - slack), numbers.down(high + slack)

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Hashable
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
 from codegen.evaluate.textures import as_map
-from codegen.intervals import logic
+from codegen.intervals import logic, whole
 from codegen.intervals.context import Context
 from codegen.intervals.lookups import lookup
 from codegen.intervals.operations import VECTOR_BUILTINS, binary, scalar_builtin, unary
@@ -97,40 +97,48 @@ class Frame:
         return value
 
     def expr(self, e: ir.Expr) -> Value:
-        match e:
-            case ir.Const():
-                key = (e.type.name, type(e.value).__name__, e.value, str(e.value))
-                return self.shared(key, lambda: constant(e.value, e.type == I32))
-            case ir.Var():
-                return self.scope[e.name]
-            case ir.Unary():
-                return self.each(e.op, lambda a: unary(self.context, e.op, a[0]), (self.expr(e.operand),))
-            case ir.Binary():
-                parts = (self.expr(e.left), self.expr(e.right))
-                return self.each(e.op, lambda a: binary(self.context, e.op, a[0], a[1]), parts)
-            case ir.Builtin():
-                return self.builtin(e.op, tuple(self.expr(a) for a in e.args))
-            case ir.Call():
-                return self.call(e)
-            case ir.Construct():
-                return self.construct(e, [self.expr(a) for a in e.args])
-            case ir.Convert():
-                return self.convert(e.type, self.expr(e.operand))
-            case ir.Member():
-                value = self.expr(e.value)
-                assert isinstance(value, dict)
-                return value[e.name]
-            case ir.Index():
-                return self.element(self.expr(e.value), self.expr(e.index))
-            case ir.Swizzle():
-                vector = self.expr(e.value)
-                assert isinstance(vector, tuple)
-                chosen = tuple(vector["xyzw".index(c)] for c in e.components)
-                return chosen[0] if len(chosen) == 1 else chosen
-            case ir.Select():
-                condition, if_true, if_false = (self.expr(c) for c in ir.children(e))
-                assert isinstance(condition, Truth)
-                return choose(condition, if_true, if_false)
+        """The value of an expression."""
+        return _EVALUATE[type(e)](self, e)
+
+    def const(self, e: ir.Const) -> Value:
+        literals = self.context.literals
+        found = literals.get(id(e))
+        if found is None:
+            key = (e.type.name, type(e.value).__name__, e.value, str(e.value))
+            found = literals[id(e)] = (e, self.shared(key, lambda: constant(e.value, e.type == I32)))
+        return found[1]
+
+    def var(self, e: ir.Var) -> Value:
+        return self.scope[e.name]
+
+    def unary(self, e: ir.Unary) -> Value:
+        return self.each(e.op, lambda a: unary(self.context, e.op, a[0]), (self.expr(e.operand),))
+
+    def binary(self, e: ir.Binary) -> Value:
+        parts = (self.expr(e.left), self.expr(e.right))
+        return self.each(e.op, lambda a: binary(self.context, e.op, a[0], a[1]), parts)
+
+    def convert(self, e: ir.Convert) -> Value:
+        return self.converted(e.type, self.expr(e.operand))
+
+    def member(self, e: ir.Member) -> Value:
+        value = self.expr(e.value)
+        assert isinstance(value, dict)
+        return value[e.name]
+
+    def index(self, e: ir.Index) -> Value:
+        return self.element(self.expr(e.value), self.expr(e.index))
+
+    def swizzle(self, e: ir.Swizzle) -> Value:
+        vector = self.expr(e.value)
+        assert isinstance(vector, tuple)
+        chosen = tuple(vector["xyzw".index(c)] for c in e.components)
+        return chosen[0] if len(chosen) == 1 else chosen
+
+    def select(self, e: ir.Select) -> Value:
+        condition, if_true, if_false = (self.expr(c) for c in ir.children(e))
+        assert isinstance(condition, Truth)
+        return choose(condition, if_true, if_false)
 
     def element(self, value: Value, index: Value) -> Value:
         """The element of an array, or the hull of those that the number may name."""
@@ -143,35 +151,38 @@ class Frame:
         return found
 
     def shared(self, key: Hashable, make: Callable[[], Single]) -> Single:
-        """The value under a key, made at its first use; what it is made of is kept alive with it."""
-        memo = self.context.memo
-        if key not in memo:
-            memo[key] = make()
-        return cast(Single, memo[key])
+        """The value under a key, made at its first use."""
+        constants = self.context.constants
+        if key not in constants:
+            constants[key] = make()
+        return constants[key]
 
     def each(self, op: str, apply: Callable[[Singles], Single], parts: tuple[Value, ...]) -> Value:
         """An operation component by component; a scalar operand goes with every component of a vector."""
-        size = max((len(p) for p in parts if isinstance(p, tuple)), default=0)
+        size = 0
+        for p in parts:
+            if isinstance(p, tuple):
+                size = len(p)
         if size == 0:
-            return self.once(op, apply, cast(Singles, parts))
+            return self.once(op, apply, parts)  # type: ignore[arg-type]
         columns = [p if isinstance(p, tuple) else (p,) * size for p in parts]
         return tuple(self.once(op, apply, components) for components in zip(*columns, strict=True))
 
     def once(self, op: str, apply: Callable[[Singles], V], parts: Singles) -> V:
-        """An operation on these very values; the result of the first time is kept."""
-        names = [id(p) for p in parts]
+        """An operation on these very values; the result of the first time counts."""
+        names = [p.number for p in parts]
         if op in ("+", "*"):
             names.sort()
         key = (op, *names)
-        found = self.context.memo.get(key)
+        memory = self.context.memory
+        found = memory.recall(key)
         if found is None:
             self.context.operation = op
-            found = apply(parts)
-            self.context.memo[key] = found
-            self.context.kept.append(parts)  # an identity in a key must not be used again
+            found = memory.keep(key, apply(parts))
         return cast(V, found)
 
-    def builtin(self, op: str, args: tuple[Value, ...]) -> Value:
+    def builtin(self, e: ir.Builtin) -> Value:
+        op, args = e.op, tuple(self.expr(a) for a in e.args)
         texture = as_map(args[0])
         if texture is not None and op == "texture_size":
             height, width = texture.levels[0].shape[:2]
@@ -192,7 +203,8 @@ class Frame:
         arguments = {p.name: self.expr(a) for p, a in zip(function.parameters, e.args, strict=True)}
         return Frame(self.library, self.context, function, arguments).run()
 
-    def construct(self, e: ir.Construct, parts: list[Value]) -> Value:
+    def construct(self, e: ir.Construct) -> Value:
+        parts = [self.expr(a) for a in e.args]
         if isinstance(e.type, Struct):
             return {f.name: part for f, part in zip(e.type.fields, parts, strict=True)}
         assert isinstance(e.type, Vector)
@@ -201,7 +213,7 @@ class Frame:
             components += part if isinstance(part, tuple) else [cast(Single, part)]
         return tuple(components * e.type.size if len(components) == 1 else components)
 
-    def convert(self, type_: Type, value: Value) -> Value:
+    def converted(self, type_: Type, value: Value) -> Value:
         assert isinstance(type_, Scalar)
 
         def apply(parts: tuple[Single, ...]) -> Single:
@@ -216,14 +228,30 @@ class Frame:
         return self.once(f"{type_.name}()", apply, (cast(Single, value),))
 
 
+_EVALUATE: dict[type, Callable[[Frame, Any], Value]] = {
+    ir.Const: Frame.const,
+    ir.Var: Frame.var,
+    ir.Unary: Frame.unary,
+    ir.Binary: Frame.binary,
+    ir.Builtin: Frame.builtin,
+    ir.Call: Frame.call,
+    ir.Construct: Frame.construct,
+    ir.Convert: Frame.convert,
+    ir.Member: Frame.member,
+    ir.Index: Frame.index,
+    ir.Swizzle: Frame.swizzle,
+    ir.Select: Frame.select,
+}
+
+
 def reinterpreted(a: Whole, is_signed: bool) -> Whole:
     """u32 to i32 or back: the same bits; every integer where an interval wraps."""
     if a.is_signed == is_signed:
         return a
+    if a.is_point:
+        exact = whole.wrapped(a.low, is_signed)
+        return Whole(exact, exact, is_signed, a.cause)
     target = Whole(a.low, a.high, is_signed, a.cause)
     least, most = target.limits
     fits = (a.low >= least) & (a.high <= most)
-    if a.is_point:
-        exact = np.where(fits, a.low, a.low + (2**32 if a.is_signed else -(2**32)))
-        return Whole(exact, exact, is_signed, a.cause)
     return Whole(np.where(fits, a.low, least), np.where(fits, a.high, most), is_signed, a.cause)

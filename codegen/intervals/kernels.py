@@ -10,116 +10,27 @@ needs a closer look, because it may overflow or lies outside what is promised.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any
 
-import numba
 import numpy as np
-from numba.extending import overload
 
-from codegen.intervals.numbers import FLOAT64_MARGIN, LARGEST, PER_ULP, SMALLEST
+from codegen.intervals.lanes import (
+    at,
+    compiled,
+    down,
+    inlined,
+    least_within,
+    most_within,
+    nearest,
+    settled_high,
+    settled_low,
+    sum_down,
+    sum_up,
+    up,
+)
+from codegen.intervals.numbers import FLOAT64_MARGIN, LARGEST, SMALLEST
 
 Ends = Any
-F = TypeVar("F", bound=Callable[..., Any])
-
-_STEP = 1 << 29
-_KEPT = ~(_STEP - 1)
-_EXPONENT = 0x7FF << 52
-_SMALLEST_BITS = int(np.float64(SMALLEST).view(np.int64))
-_FAR = 2.0**1000
-
-
-def compiled(function: F) -> F:
-    """Compiled at its first call with some kinds of operands, and kept on disk."""
-    return cast(F, numba.njit(nogil=True, cache=True, error_model="numpy")(function))
-
-
-def inlined(function: F) -> F:
-    """Part of compiled functions."""
-    return cast(F, numba.njit(error_model="numpy")(function))
-
-
-def at(x: Any, i: int) -> Any:
-    """The number of a lane."""
-    return x[i]
-
-
-@overload(at)
-def _at(x: Any, i: Any) -> Any:
-    def of_lanes(x: Any, i: Any) -> Any:
-        return x[i]
-
-    def of_all(x: Any, i: Any) -> Any:
-        return x
-
-    return of_lanes if isinstance(x, numba.types.Array) else of_all
-
-
-@inlined
-def _bits(x: Any) -> Any:
-    return np.float64(x).view(np.int64)
-
-
-@inlined
-def _float(x: Any) -> Any:
-    return np.int64(x).view(np.float64)
-
-
-@inlined
-def _down(x: Any) -> Any:
-    """The largest float32 at or below x."""
-    b = _bits(x)
-    return _float((b + ((b >> 63) & (_STEP - 1))) & _KEPT)
-
-
-@inlined
-def _up(x: Any) -> Any:
-    """The smallest float32 at or above x."""
-    b = _bits(x)
-    return _float((b + (~(b >> 63) & (_STEP - 1))) & _KEPT)
-
-
-@inlined
-def _nearest(x: Any) -> Any:
-    """The float32 nearest to x."""
-    return np.float64(np.float32(x))
-
-
-@inlined
-def _lost(x: Any, y: Any, total: Any) -> Any:
-    """What float64 lost in a sum (Knuth's two-sum)."""
-    share = total - x
-    return (x - (total - share)) + (y - share)
-
-
-@inlined
-def _sum_down(x: Any, y: Any) -> Any:
-    total = x + y
-    b = _bits(total)
-    b -= (1 | (b >> 63)) if _lost(x, y, total) < 0.0 else 0  # the float64 below
-    return _float((b + ((b >> 63) & (_STEP - 1))) & _KEPT)
-
-
-@inlined
-def _sum_up(x: Any, y: Any) -> Any:
-    total = x + y
-    b = _bits(total)
-    b += (1 | (b >> 63)) if _lost(x, y, total) > 0.0 else 0  # the float64 above
-    return _float((b + (~(b >> 63) & (_STEP - 1))) & _KEPT)
-
-
-@inlined
-def _settled_low(x: Any) -> Any:
-    """A lower end that may flush."""
-    flushed = 0.0 if x >= 0.0 else -SMALLEST
-    return flushed if abs(x) < SMALLEST else x
-
-
-@inlined
-def _settled_high(x: Any) -> Any:
-    """An upper end that may flush."""
-    flushed = 0.0 if x <= 0.0 else SMALLEST
-    return flushed if abs(x) < SMALLEST else x
 
 
 @compiled
@@ -127,8 +38,20 @@ def add(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any
     """a + b, rounded to either neighbour."""
     low, high, look = np.empty(count), np.empty(count), 0
     for i in range(count):
-        x = _settled_low(_sum_down(at(a_low, i), at(b_low, i)))
-        y = _settled_high(_sum_up(at(a_high, i), at(b_high, i)))
+        x = settled_low(sum_down(at(a_low, i), at(b_low, i)))
+        y = settled_high(sum_up(at(a_high, i), at(b_high, i)))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
+
+
+@compiled
+def subtract(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+    """a - b, rounded to either neighbour."""
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        x = settled_low(sum_down(at(a_low, i), -at(b_high, i)))
+        y = settled_high(sum_up(at(a_high, i), -at(b_low, i)))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
     return low, high, look
@@ -141,8 +64,8 @@ def multiply(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -
     for i in range(count):
         p, q = at(a_low, i) * at(b_low, i), at(a_high, i) * at(b_low, i)
         r, s = at(a_low, i) * at(b_high, i), at(a_high, i) * at(b_high, i)
-        x = _settled_low(_down(min(min(p, q), min(r, s))))
-        y = _settled_high(_up(max(max(p, q), max(r, s))))
+        x = settled_low(down(min(min(p, q), min(r, s))))
+        y = settled_high(up(max(max(p, q), max(r, s))))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
     return low, high, look
@@ -155,36 +78,10 @@ def square(a_low: Ends, a_high: Ends, count: int) -> Any:
     for i in range(count):
         p, q = at(a_low, i), at(a_high, i)
         near, far = max(max(p, -q), 0.0), max(abs(p), abs(q))
-        x, y = _settled_low(_down(near * near)), _settled_high(_up(far * far))
+        x, y = settled_low(down(near * near)), settled_high(up(far * far))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
     return low, high, look
-
-
-@inlined
-def _ulp(x: Any) -> Any:
-    """The distance of the float32 around x, with what is granted on varying numbers of ULP."""
-    return _float(max(_bits(x) & _EXPONENT, _SMALLEST_BITS)) * 2.0**-23 * PER_ULP
-
-
-@inlined
-def _least(low: Any, high: Any, ulps: Any) -> Any:
-    """The least float32 within some ULP of numbers between two ends, its sign kept."""
-    least, most = low - abs(low) * FLOAT64_MARGIN, high + abs(high) * FLOAT64_MARGIN
-    spacing = _ulp(least)
-    inside = min(least + spacing * ulps, most)
-    found = least - max(spacing, _ulp(inside)) * ulps
-    return _up(max(found, min(low, 0.0) * _FAR))
-
-
-@inlined
-def _most(low: Any, high: Any, ulps: Any) -> Any:
-    """The greatest float32 within some ULP of numbers between two ends, its sign kept."""
-    least, most = low - abs(low) * FLOAT64_MARGIN, high + abs(high) * FLOAT64_MARGIN
-    spacing = _ulp(most)
-    inside = max(most - spacing * ulps, least)
-    found = most + max(spacing, _ulp(inside)) * ulps
-    return _down(min(found, max(high, 0.0) * _FAR))
 
 
 @compiled
@@ -192,8 +89,8 @@ def within_ulp(low: Ends, high: Ends, ulps_low: Ends, ulps_high: Ends, count: in
     """Float32 within some ULP of numbers between two different ends."""
     first, last, look = np.empty(count), np.empty(count), 0
     for i in range(count):
-        x = _settled_low(_least(at(low, i), at(high, i), at(ulps_low, i)))
-        y = _settled_high(_most(at(low, i), at(high, i), at(ulps_high, i)))
+        x = settled_low(least_within(at(low, i), at(high, i), at(ulps_low, i)))
+        y = settled_high(most_within(at(low, i), at(high, i), at(ulps_high, i)))
         first[i], last[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
     return first, last, look
@@ -212,7 +109,7 @@ def divide(
         least, most = (-q if negative else p), (-p if negative else q)
         small, large = (-v if negative else u), (-u if negative else v)
         a, b = min(least / large, least / small), max(most / small, most / large)
-        x, y = _settled_low(_least(a, b, ulps)), _settled_high(_most(a, b, ulps))
+        x, y = settled_low(least_within(a, b, ulps)), settled_high(most_within(a, b, ulps))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
     return low, high, look
@@ -221,7 +118,7 @@ def divide(
 @inlined
 def _inverse_root(low: Any, high: Any, ulps: Any) -> Any:
     near, far = 1.0 / np.sqrt(max(high, SMALLEST)), 1.0 / np.sqrt(max(low, SMALLEST))
-    return _settled_low(_least(near, far, ulps)), _settled_high(_most(near, far, ulps))
+    return settled_low(least_within(near, far, ulps)), settled_high(most_within(near, far, ulps))
 
 
 @compiled
@@ -246,7 +143,10 @@ def square_root(
         p, q = at(x_low, i), at(x_high, i)
         u, v = _inverse_root(p, q, ulps)
         least, most = 1.0 / v, 1.0 / u
-        x, y = _settled_low(_least(least, most, ulps_divide)), _settled_high(_most(least, most, ulps_divide))
+        x, y = (
+            settled_low(least_within(least, most, ulps_divide)),
+            settled_high(most_within(least, most, ulps_divide)),
+        )
         x, y = (0.0 if p < SMALLEST else x), (0.0 if q <= 0.0 else y)
         low[i], high[i] = x, y
         look |= (p < 0.0) | (u < near) | (v > far) | (y > LARGEST)
@@ -255,7 +155,7 @@ def square_root(
 
 @inlined
 def _add(a_low: Any, a_high: Any, b_low: Any, b_high: Any) -> Any:
-    return _settled_low(_sum_down(a_low, b_low)), _settled_high(_sum_up(a_high, b_high))
+    return settled_low(sum_down(a_low, b_low)), settled_high(sum_up(a_high, b_high))
 
 
 @compiled
@@ -280,6 +180,49 @@ def sum_of_three(
     return low, high, look
 
 
+@inlined
+def _product(a_low: Any, a_high: Any, b_low: Any, b_high: Any) -> Any:
+    p, q, r, s = a_low * b_low, a_high * b_low, a_low * b_high, a_high * b_high
+    return min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
+
+
+@inlined
+def _square(a_low: Any, a_high: Any) -> Any:
+    near, far = max(max(a_low, -a_high), 0.0), max(abs(a_low), abs(a_high))
+    return near * near, far * far
+
+
+@inlined
+def _size(low: Any, high: Any) -> Any:
+    return max(abs(low), abs(high))
+
+
+@compiled
+def scaled_dot(
+    x: Ends, x_: Ends, y: Ends, y_: Ends, z: Ends, z_: Ends, u: Ends, u_: Ends, v: Ends, v_: Ends,
+    w: Ends, w_: Ends, squared: bool, share: float, epsilon: float, count: int,
+) -> Any:  # fmt: skip
+    """(x, y, z) . (u, v, w), upper ends x_ ..., off by at most `share` `epsilon` times the largest square."""
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        if squared:
+            (p, q), (r, s), (f, g) = _square(x[i], x_[i]), _square(y[i], y_[i]), _square(z[i], z_[i])
+        else:
+            p, q = _product(x[i], x_[i], u[i], u_[i])
+            r, s = _product(y[i], y_[i], v[i], v_[i])
+            f, g = _product(z[i], z_[i], w[i], w_[i])
+        slack = (_size(p, q) + _size(r, s) + _size(f, g)) * FLOAT64_MARGIN
+        largest = max(max(_size(x[i], x_[i]), _size(y[i], y_[i])), _size(z[i], z_[i]))
+        others = max(max(_size(u[i], u_[i]), _size(v[i], v_[i])), _size(w[i], w_[i]))
+        largest = max(largest, others)
+        off = largest * largest * share * epsilon
+        least, most = up((p + r + f) - slack - off), down((q + s + g) + slack + off)
+        least = settled_low(max(least, 0.0) if squared else least)
+        low[i], high[i] = least, settled_high(most)
+        look |= (least < -LARGEST) | (high[i] > LARGEST)
+    return low, high, look
+
+
 @compiled
 def choose(true: Ends, false: Ends, a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
     """a where a condition holds, b where it does not, the hull where it may do either."""
@@ -301,35 +244,96 @@ def multiply_nearest(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count
         p, q = at(a_low, i) * at(b_low, i), at(a_high, i) * at(b_low, i)
         r, s = at(a_low, i) * at(b_high, i), at(a_high, i) * at(b_high, i)
         u, v = min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
-        x, y = _settled_low(_nearest(u)), _settled_high(_nearest(v))
+        x, y = settled_low(nearest(u)), settled_high(nearest(v))
         least[i], most[i], low[i], high[i] = u, v, x, y
         look |= (x < -LARGEST) | (y > LARGEST)
     return least, most, low, high, look
 
 
 @compiled
+def multiply_points(a: Ends, b: Ends, count: int) -> Any:
+    """Exact products of numbers, and these rounded to nearest; looked at below the normal numbers as well."""
+    exact, near, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        p = at(a, i) * at(b, i)
+        x = nearest(p)
+        exact[i], near[i] = p, x
+        look |= _unusual(x)
+    return exact, near, look
+
+
+@compiled
+def add_points(a: Ends, b: Ends, count: int) -> Any:
+    """Sums of numbers, rounded to nearest; looked at below the normal numbers as well."""
+    near, look = np.empty(count), 0
+    for i in range(count):
+        x = nearest(at(a, i) + at(b, i))
+        near[i] = x
+        look |= _unusual(x)
+    return near, look
+
+
+@inlined
+def _unusual(x: Any) -> Any:
+    return (not abs(x) <= LARGEST) | ((abs(x) < SMALLEST) & (x != 0.0))
+
+
+@compiled
 def add_nearest(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
-    """a + b rounded to nearest; below the normal numbers nothing is settled."""
-    low, high = np.empty(count), np.empty(count)
+    """a + b, rounded to nearest."""
+    low, high, look = np.empty(count), np.empty(count), 0
     for i in range(count):
-        low[i], high[i] = _nearest(at(a_low, i) + at(b_low, i)), _nearest(at(a_high, i) + at(b_high, i))
-    return low, high
+        x = settled_low(nearest(at(a_low, i) + at(b_low, i)))
+        y = settled_high(nearest(at(a_high, i) + at(b_high, i)))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
 
 
 @compiled
-def fuse(low: Ends, high: Ends, least: Ends, most: Ends, b_low: Ends, b_high: Ends, count: int) -> None:
-    """Widen sums rounded to nearest, in place, by those of an exact product with b."""
+def add_fused(
+    a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, least: Ends, most: Ends, count: int
+) -> Any:
+    """a + b, rounded to nearest, or the exact product that is a, between `least` and `most`, plus b."""
+    low, high, look = np.empty(count), np.empty(count), 0
     for i in range(count):
-        low[i] = min(low[i], _sum_down(at(least, i), at(b_low, i)))
-        high[i] = max(high[i], _sum_up(at(most, i), at(b_high, i)))
+        p, q = nearest(at(a_low, i) + at(b_low, i)), nearest(at(a_high, i) + at(b_high, i))
+        x = settled_low(min(p, sum_down(at(least, i), at(b_low, i))))
+        y = settled_high(max(q, sum_up(at(most, i), at(b_high, i))))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
 
 
 @compiled
-def settle(low: Ends, high: Ends, count: int) -> Any:
-    """Ends that may flush, in place."""
+def fuse(low: Ends, high: Ends, a_low: Ends, a_high: Ends, least: Ends, most: Ends, count: int) -> int:
+    """Widen settled sums, in place, by those of an exact product with a."""
     look = 0
     for i in range(count):
-        x, y = _settled_low(low[i]), _settled_high(high[i])
+        x = min(low[i], settled_low(sum_down(at(least, i), at(a_low, i))))
+        y = max(high[i], settled_high(sum_up(at(most, i), at(a_high, i))))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
     return look
+
+
+@compiled
+def less(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+    """Whether a < b may hold, whether it may fail, and whether both is so in a lane."""
+    true, false, undecided = np.empty(count, np.bool_), np.empty(count, np.bool_), 0
+    for i in range(count):
+        t, f = at(a_low, i) < at(b_high, i), at(a_high, i) >= at(b_low, i)
+        true[i], false[i] = t, f
+        undecided |= t & f
+    return true, false, undecided
+
+
+@compiled
+def at_most(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+    """Whether a <= b may hold, whether it may fail, and whether both is so in a lane."""
+    true, false, undecided = np.empty(count, np.bool_), np.empty(count, np.bool_), 0
+    for i in range(count):
+        t, f = at(a_low, i) <= at(b_high, i), at(a_high, i) > at(b_low, i)
+        true[i], false[i] = t, f
+        undecided |= t & f
+    return true, false, undecided

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from codegen.intervals import bulk
 from codegen.intervals.arithmetic import rounded, settle
 from codegen.intervals.causes import Codes
 from codegen.intervals.context import MOST_WAYS, Context
@@ -18,6 +19,11 @@ Number = Range | Whole
 
 def compare(context: Context, op: str, a: Number, b: Number) -> Truth:
     """The truth of a comparison; undecided lanes fork, and the way taken narrows both operands."""
+    if isinstance(a, Range) and isinstance(b, Range) and a.cause is None and b.cause is None:
+        quick = bulk.compare(context, op, a, b)
+        if quick is not None and not quick[2]:
+            context.decided()
+            return Truth(quick[0], quick[1])
     true, false = _may_hold(op, a, b), _may_hold(_OPPOSITE[op], a, b)
     undecided = true & false
     for codes in (a.cause, b.cause):

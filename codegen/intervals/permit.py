@@ -194,7 +194,7 @@ class _Run:
         """Split lanes at their first open fork until none is open, or DEPTH or MOST_PARTS is reached."""
         before = [a[lanes].copy() for a in (*self.low, *self.high, self.codes)]
         owner = lanes
-        path = Ways(np.full((len(lanes), DEPTH), -1, np.int32), np.full((len(lanes), DEPTH), -1, np.int32))
+        path = Ways(np.empty((len(lanes), 0), np.int32), np.empty((len(lanes), 0), np.int32))
         fork, width = forks[lanes], widths[lanes]
         seen = np.zeros(self.count, np.bool_)
         given_up = np.zeros(self.count, np.bool_)
@@ -205,9 +205,7 @@ class _Run:
             index = np.repeat(np.flatnonzero(kept), width[kept])
             if not len(index):
                 break
-            way = _counted(width[kept])
-            path = Ways(path.forks[index], path.ways[index])
-            path.forks[:, depth], path.ways[:, depth] = fork[index], way
+            path = path.then(index, fork[index], _counted(width[kept]).astype(np.int32))
             owner = owner[index]
             open_fork, open_width = np.empty(len(owner), np.int32), np.empty(len(owner), np.int32)
             for part, found in self.each_chunk(owner, path):

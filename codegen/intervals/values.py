@@ -7,7 +7,8 @@ seen as such.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import itertools
+from dataclasses import dataclass, field
 from typing import TypeVar, cast
 
 import numpy as np
@@ -16,8 +17,11 @@ from codegen.intervals.causes import Codes, first
 from codegen.intervals.compiled import ends, kernels, wanted
 from codegen.intervals.numbers import Array, Reach, reach, select
 
+_serial = itertools.count().__next__
+"""Numbers of values: no two values of a process have the same, unless one is the other computed again."""
 
-@dataclass(eq=False, slots=True)
+
+@dataclass(eq=False, slots=True, weakref_slot=True)
 class Range:
     """Floats between two float32 numbers, held in float64.
 
@@ -25,6 +29,7 @@ class Range:
     cause      numbers of causes where the value may be anything, NaN included; its ends are then infinite
     product    for a rounded product, bounds of the unrounded one: a multiply-add may use it
     known      its reach, see codegen.intervals.numbers.reach, once it was asked for
+    number     which value it is
     """
 
     low: Array
@@ -32,6 +37,7 @@ class Range:
     cause: Codes = None
     product: tuple[Array, Array] | None = None
     known: Reach | None = None
+    number: int = field(default_factory=_serial)
 
     @property
     def is_point(self) -> bool:
@@ -48,7 +54,7 @@ class Range:
         self.low, self.high, self.known = low, high, None
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(eq=False, slots=True, weakref_slot=True)
 class Whole:
     """Integers between two ends, int64; `is_signed` tells i32 from u32."""
 
@@ -56,6 +62,7 @@ class Whole:
     high: Array
     is_signed: bool
     cause: Codes = None
+    number: int = field(default_factory=_serial)
 
     @property
     def is_point(self) -> bool:
@@ -77,6 +84,7 @@ class Truth:
 
     true: Array
     false: Array
+    number: int = field(default_factory=_serial)
 
     @property
     def undecided(self) -> Array:

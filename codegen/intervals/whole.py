@@ -40,9 +40,8 @@ def _exact(op: str, a: Array, b: Array) -> Array:
         case "-":
             return np.asarray(a - b)
         case "*":
-            # Only the low 32 bits count, and uint64 arithmetic keeps those of any product.
-            low = (a.astype(np.uint64) * b.astype(np.uint64)) & np.uint64(_MODULUS - 1)
-            return low.astype(np.int64)
+            # Only the low 32 bits count, and int64 arithmetic keeps those of any product.
+            return np.asarray((a * b) & (_MODULUS - 1))
         case "//":
             return np.asarray(a // np.where(b == 0, 1, b))
         case "%":
@@ -116,13 +115,18 @@ _HULLS: dict[str, Callable[[Whole, Whole], Ends]] = {
 }
 
 
+def wrapped(a: Array, is_signed: bool) -> Array:
+    """Integers as the type wraps them."""
+    return np.asarray(((a + 2**31) & (_MODULUS - 1)) - 2**31 if is_signed else a & (_MODULUS - 1))
+
+
 def _wrapped(low: Array, high: Array, like: Whole, codes: Codes) -> Whole:
     """Back into the type: ends that wrap alike stay an interval, others become every integer."""
     least, most = like.limits
-    turns_low, turns_high = (low - least) >> 32, (high - least) >> 32
     if low is high:
-        a = low - (turns_low << 32)
+        a = wrapped(low, like.is_signed)
         return Whole(a, a, like.is_signed, codes)
+    turns_low, turns_high = (low - least) >> 32, (high - least) >> 32
     same = turns_low == turns_high
     return Whole(
         np.where(same, low - (turns_low << 32), least),
