@@ -29,10 +29,26 @@ def write(entries: Iterable[Entry], path: Path = RESULTS) -> None:
     write_text(path, "[\n" + ",\n".join(lines) + "\n]\n")
 
 
+def joined(before: Entry, more: Entry) -> Entry:
+    """An entry with the further batches of another, of the same sources."""
+    tables = {
+        table: {verdict: count + before["tables"][table][verdict] for verdict, count in counts.items()}
+        for table, counts in more["tables"].items()
+    }
+    sums = {key: before[key] + more[key] for key in ("batches", "points", "hard")}
+    seconds = round(before["seconds"] + more["seconds"], 1)
+    return {**more, **sums, "seconds": seconds, "tables": tables, "worst": before["worst"] or more["worst"]}
+
+
 def is_current(library: Library, entry: Entry) -> bool:
     """Whether function and intervals are still those of the entry."""
     same_source = library.select([entry["function"]]).source_hash == entry["source"]
     return same_source and bool(entry["intervals"] == intervals_hash())
+
+
+def batches(library: Library, entry: Entry | None) -> int:
+    """How many batches of random points an entry holds of the present sources; 0 without one."""
+    return int(entry.get("batches", 0)) if entry is not None and is_current(library, entry) else 0
 
 
 def passed(entry: Entry) -> bool:

@@ -13,22 +13,26 @@ import numpy as np
 
 from codegen.intervals import TABLES, Table, load_table, permitted
 from codegen.ir import nodes as ir
-from codegen.library import Library
+from codegen.library import Library, load_library
 from conformance import cases
 from conformance.check.draws import Draw, length
-from conformance.check.sample import together
+from conformance.check.sample import rows, together
+from conformance.executor import Job
 from conformance.soundness.enclosure import Array
 from conformance.soundness.held import Held, either_way, held, holds, precisely
 from conformance.soundness.walk import enclosed
 
+TASK = "conformance.soundness.sweep:run"
 BATCH = 1 << 16
-"""Random points drawn at a time."""
+"""Random points drawn at a time: batch k is the same in every sweep."""
+PART = 1 << 14
+"""Points judged at a time: what numpy works on stays near the processor."""
 HARD = 1000
 """Points of a family that has no number of its own, such as the ends of domains."""
 MOST_HARD = 20_000
 """Points of one family at most: each stored point with each parameter that it fits comes first."""
-PRECISE = 4096
-"""Lanes of a batch that are undecided under some table and evaluated in 50 digits; others stay undecided."""
+PRECISE = 2048
+"""Lanes of a part that are undecided under some table and evaluated in 50 digits; others stay undecided."""
 LEANS_ON = {
     "sqrt": ("inverse_sqrt", "/"),
     "dot": ("*", "+"),
@@ -61,11 +65,17 @@ class Count:
 
 @dataclass
 class Swept:
-    """What one function's sweep found; `shared` names tables that promise the same of its operations."""
+    """What one function's sweep found.
+
+    batches  of random points that were swept, from number 0 on
+    hard     points that are hard cases
+    shared   table -> tables that promise the same of the function's operations
+    """
 
     function: str
     source: str
     intervals: str
+    batches: int = 0
     points: int = 0
     hard: int = 0
     seconds: float = 0.0
@@ -104,8 +114,8 @@ def different(library: Library, name: str) -> dict[str, tuple[Table, list[str]]]
     return {table.name: (table, names) for table, names in found.values()}
 
 
-def batches(library: Library, name: str, points: int) -> Iterator[tuple[bool, Mapping[str, Any]]]:
-    """All hard cases together, then random points until there are enough: (hard, inputs)."""
+def hard_cases(library: Library, name: str) -> Mapping[str, Any] | None:
+    """All hard cases of a function together; None where it has none."""
     function = library.function(name)
     draws = []
     for family in cases.families_for(function.parameters):
@@ -115,38 +125,57 @@ def batches(library: Library, name: str, points: int) -> Iterator[tuple[bool, Ma
     if cases.has_worst(function):
         worst = cases.worst(function)
         draws.append(Draw(cases.WORST, length(worst), 0, worst))
-    if draws:
-        yield True, together(draws).inputs
-    for seed in range(1, -(-points // BATCH) + 1):
-        yield False, cases.draw(function, cases.UNIFORM, min(BATCH, points - (seed - 1) * BATCH), seed)
+    return together(draws).inputs if draws else None
 
 
-def sweep(library: Library, name: str, points: int) -> Swept:
-    """Hard cases and so many random points of one function, under every table."""
+def batches(library: Library, name: str, start: int, stop: int) -> Iterator[tuple[bool, Mapping[str, Any]]]:
+    """Batches of random points by their numbers, before number 0 all hard cases: (hard, inputs)."""
+    hard = hard_cases(library, name) if start == 0 else None
+    if hard is not None:
+        yield True, hard
+    for number in range(start, stop):
+        yield False, cases.draw(library.function(name), cases.UNIFORM, BATCH, number + 1)
+
+
+def sweep(library: Library, name: str, start: int, stop: int) -> Swept:
+    """Batches start to stop of random points of one function, and hard cases, under every table."""
     begin = time.process_time()
-    found = Swept(name, library.select([name]).source_hash, intervals_hash())
+    found = Swept(name, library.select([name]).source_hash, intervals_hash(), batches=stop - start)
     tables = different(library, name)
     for table_name, (_, names) in tables.items():
         found.shared[table_name] = names
         found.tables[table_name] = Count()
-    for hard, inputs in batches(library, name, points):
+    for hard, inputs in batches(library, name, start, stop):
         count = length(inputs)
         found.points += count
         found.hard += count if hard else 0
-        value, lost = enclosed(library, name, inputs)
-        allowed = {t: permitted(library, name, inputs, table) for t, (table, _) in tables.items()}
-        verdicts = {t: held(a, value, lost) for t, a in allowed.items()}
-        some = np.flatnonzero(np.logical_or.reduce([v.undecided for v in verdicts.values()]))[:PRECISE]
-        precise = precisely(library, name, inputs, some)
-        for table_name, verdict in verdicts.items():
-            lanes = some[verdict.undecided[some]]
-            inside = holds(allowed[table_name], some, precise)[verdict.undecided[some]]
-            found.tables[table_name].add(verdict, len(lanes), inside)
-            bad = [*np.flatnonzero(verdict.outside), *lanes[~inside]]
-            if bad and not found.worst:
-                found.worst = f"{table_name}: {cases.words(library.function(name), inputs, int(bad[0]))}"
+        for first in range(0, count, PART):
+            part = rows(inputs, np.arange(first, min(first + PART, count)))
+            _look(library, found, part, {t: table for t, (table, _) in tables.items()})
     found.seconds = time.process_time() - begin
     return found
+
+
+def _look(library: Library, found: Swept, inputs: Mapping[str, Any], tables: Mapping[str, Table]) -> None:
+    """Judge some points under every table."""
+    name = found.function
+    value, lost = enclosed(library, name, inputs)
+    allowed = {t: permitted(library, name, inputs, table) for t, table in tables.items()}
+    verdicts = {t: held(a, value, lost) for t, a in allowed.items()}
+    some = np.flatnonzero(np.logical_or.reduce([v.undecided for v in verdicts.values()]))[:PRECISE]
+    precise = precisely(library, name, inputs, some)
+    for table_name, verdict in verdicts.items():
+        lanes = some[verdict.undecided[some]]
+        inside = holds(allowed[table_name], some, precise)[verdict.undecided[some]]
+        found.tables[table_name].add(verdict, len(lanes), inside)
+        bad = [*np.flatnonzero(verdict.outside), *lanes[~inside]]
+        if bad and not found.worst:
+            found.worst = f"{table_name}: {cases.words(library.function(name), inputs, int(bad[0]))}"
+
+
+def run(job: Job) -> dict[str, Any]:
+    """A task for executors: batches job.start to job.stop of the job's function."""
+    return sweep(load_library(), job.function, job.start, job.stop).entry()
 
 
 def intervals_hash() -> str:

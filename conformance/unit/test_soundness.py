@@ -11,7 +11,9 @@ The whole sweep is `python -m conformance.soundness`; the nightly run does what 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -22,12 +24,14 @@ from codegen.intervals import TABLES, Table, load_table, permitted
 from codegen.library import load_library
 from codegen.ops import BUILTINS
 from conformance import cases
+from conformance.executor import Here, Job, Processes
 from conformance.soundness import record
 from conformance.soundness import sweep as sweeping
 from conformance.soundness.__main__ import POINTS
 from conformance.soundness.enclosure import Enclosure
 from conformance.soundness.held import either_way, held, scalars
-from conformance.soundness.sweep import LEANS_ON, different, sweep
+from conformance.soundness.jobs import BATCHES, missing, sweep_missing
+from conformance.soundness.sweep import BATCH, LEANS_ON, different, sweep
 from conformance.soundness.walk import enclosed, leaves
 from conformance.unit.support.sources import library_of
 from conformance.unit.support.tight import TOO_TIGHT, tightened
@@ -92,7 +96,9 @@ def test_exact_operations_stay_points(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", SAMPLE)
 def test_intervals_hold_the_exact_value(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweeping, "MOST_HARD", FEW // 10)
-    found = sweep(LIBRARY, name, FEW)
+    monkeypatch.setattr(sweeping, "BATCH", FEW)
+    found = sweep(LIBRARY, name, 0, 1)
+    assert found.points == found.hard + FEW
     for table, count in found.tables.items():
         assert count.outside == 0, f"{table}: {found.worst}"
         assert count.undecided == 0, table
@@ -152,13 +158,37 @@ def test_record_passes() -> None:
             assert sum(count.values()) == entry["points"]
 
 
+def test_sweeps_go_on_where_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sweeping, "MOST_HARD", 5)
+    monkeypatch.setattr(sweeping, "BATCH", FEW)
+    name, entries = "sin_angle", dict[str, Any]()
+
+    def jobs(points: int) -> list[Job]:
+        return list(missing(LIBRARY, [name], entries, points))
+
+    monkeypatch.setattr("conformance.soundness.jobs.BATCH", FEW)
+    assert [(job.start, job.stop) for job in jobs(6 * FEW - 1)] == [(0, BATCHES), (BATCHES, 6)]
+    results = list(sweep_missing(LIBRARY, Here(), jobs(2 * FEW), entries))
+    assert [r.done for r in results] == [True]
+    (job,) = jobs(3 * FEW)
+    assert (job.start, job.stop) == (2, 3)
+    later = replace(job, start=3, stop=4)
+    assert len(list(sweep_missing(LIBRARY, Here(), [later], entries))) == 1
+    assert entries[name]["batches"] == 2, "batch 2 is missing, so batch 3 is put aside"
+    assert len(list(sweep_missing(LIBRARY, Here(), [job], entries))) == 1
+    whole = sweep(LIBRARY, name, 0, 3).entry()
+    assert {**entries[name], "seconds": 0.0} == {**whole, "seconds": 0.0}
+    entries[name]["intervals"] = "changed"
+    assert jobs(FEW)[0].start == 0
+
+
 @pytest.mark.nightly
 @pytest.mark.timeout(3 * 3600)
-@pytest.mark.parametrize("name", LIBRARY.public)
-def test_intervals_hold_a_million_exact_values(name: str) -> None:
+def test_intervals_hold_a_million_exact_values() -> None:
+    """On two processes: what is not recorded of the present sources."""
     entries = record.read()
-    if name in entries and entries[name]["points"] >= POINTS and record.is_current(LIBRARY, entries[name]):
-        entry = entries[name]
-    else:
-        entry = sweep(LIBRARY, name, POINTS).entry()
-    assert record.passed(entry), entry["worst"]
+    jobs = list(missing(LIBRARY, list(LIBRARY.public), entries, POINTS))
+    for result in sweep_missing(LIBRARY, Processes(2), jobs, entries):
+        assert result.done, f"{result.job.identity}: {result.error}"
+        assert record.passed(result.data), f"{result.job.function}: {result.data['worst']}"
+    assert all(record.batches(LIBRARY, entries[name]) * BATCH >= POINTS for name in LIBRARY.public)
