@@ -17,9 +17,20 @@ def safe_sqrt(x: Any) -> Array:
 
 
 def safe_pow(x: Any, y: Any) -> Array:
-    """1 where y = 0; else 0 where x <= 0; else x^y."""
+    """1 where y = 0; else 0 where x <= 0; else x^y between e^-80 and e^80, where it saturates."""
+    return _saturated(x, y, float(np.exp(80.0)))
+
+
+def safe_pow_exp2(x: Any, y: Any) -> Array:
+    """The same, saturated at 2^-115 and 2^115."""
+    return _saturated(x, y, 2.0**115)
+
+
+def _saturated(x: Any, y: Any, most: float) -> Array:
     with np.errstate(over="ignore", under="ignore"):
-        return power(x, y)
+        raised = power(x, y)
+    decided = (real(y) == 0.0) | (real(x) <= 0.0)
+    return np.where(decided, raised, np.clip(raised, 1.0 / most, most))
 
 
 def log_one_minus(q: Any) -> Array:
@@ -66,6 +77,7 @@ def bessel_i0e(x: Any) -> Array:
 REFERENCES: dict[str, Callable[..., Any]] = {
     "safe_sqrt": safe_sqrt,
     "safe_pow": safe_pow,
+    "safe_pow_exp2": safe_pow_exp2,
     "log_one_minus": log_one_minus,
     "pow_one_minus": pow_one_minus,
     "one_minus_exp_neg": one_minus_exp_neg,

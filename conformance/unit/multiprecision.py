@@ -63,6 +63,11 @@ def power(x: Any, y: Any) -> Any:
     return mp.exp(y * mp.log(x)) if x > 0 else mpf(0)
 
 
+def saturating(most: Any) -> Callable[[Any, Any], Any]:
+    """A power that stays between 1 / most and most where it is neither 0 nor of exponent 0."""
+    return lambda x, y: min(max(power(x, y), 1 / most), most) if x > 0 and y != 0 else power(x, y)
+
+
 def smoothstep(low: Any, high: Any, x: Any) -> Any:
     if low == high:
         return mpf(0) if x < low else mpf(1)
@@ -175,7 +180,7 @@ def mirror(l: Vector, n: Vector) -> Vector:
 
 FORMS: dict[str, Callable[..., Any]] = {
     "safe_sqrt": lambda x: mp.sqrt(max(x, mpf(0))),
-    "safe_pow": power,
+    "safe_pow": saturating(mp.exp(80)),
     "log_one_minus": lambda q: mp.log(1 - q),
     "pow_one_minus": lambda q, p: power(1 - q, p),
     "one_minus_exp_neg": lambda x: 1 - mp.exp(-x),

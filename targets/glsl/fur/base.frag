@@ -15,7 +15,7 @@ $lighting
 
 void main()
 {
-    vec3 n = vair_safe_normalize(at_normal, vec3(0.0, 0.0, 1.0));
-    vec3 t = vair_safe_normalize(at_tangent, n);
+    vec3 n = vair_safe_normalize_dot(at_normal, vec3(0.0, 0.0, 1.0));
+    vec3 t = vair_safe_normalize_dot(at_tangent, n);
     colour = vec4(fur_radiance(at_position, n, t, 0.0, at_share.x, at_share.y), 1.0);
 }

@@ -18,14 +18,15 @@ $lighting
 void main()
 {
     float height = clamp(at_uv.z, 0.0, 1.0);
-    float thickness = vair_thinned(fur.thickness, at_share.y);
+    float thickness = vair_thinned(fur.thickness, at_share.y);   //? painted
+    float thickness = fur.thickness;   //? whole
     float mask = vair_fin_strand_mask(
         at_uv.x, floor(at_uv.y + 0.5), height, fur.hairs, thickness, fur.seed);
     float alpha = vair_fin_alpha(at_opacity, height, mask);
     if (alpha <= 0.0) {
         discard;
     }
-    vec3 n = vair_safe_normalize(at_normal, vec3(0.0, 0.0, 1.0));
-    vec3 t = vair_safe_normalize(at_tangent, n);
+    vec3 n = vair_safe_normalize_dot(at_normal, vec3(0.0, 0.0, 1.0));
+    vec3 t = vair_safe_normalize_dot(at_tangent, n);
     colour = vec4(fur_radiance(at_position, n, t, height, at_share.x, at_share.y), alpha);
 }

@@ -18,12 +18,13 @@ $lighting
 void main()
 {
     float height = at_layer.x;
-    float thickness = vair_thinned(fur.thickness, at_share.y);
+    float thickness = vair_thinned(fur.thickness, at_share.y);   //? painted
+    float thickness = fur.thickness;   //? whole
     float alpha = at_layer.y * vair_shell_strand_mask(at_uv, height, fur.hairs, thickness, fur.seed);
     if (alpha <= 0.0) {
         discard;
     }
-    vec3 n = vair_safe_normalize(at_normal, vec3(0.0, 0.0, 1.0));
-    vec3 t = vair_safe_normalize(at_tangent, n);
+    vec3 n = vair_safe_normalize_dot(at_normal, vec3(0.0, 0.0, 1.0));
+    vec3 t = vair_safe_normalize_dot(at_tangent, n);
     colour = vec4(fur_radiance(at_position, n, t, height, at_share.x, at_share.y), alpha);
 }
