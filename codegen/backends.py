@@ -53,12 +53,15 @@ def texture_data(levels: tuple[Any, ...], repeat_u: bool, repeat_v: bool) -> Any
     return textures.TextureData(levels, repeat_u, repeat_v)
 
 
-def fur_stages(target: str) -> dict[str, str]:
-    """The texts that stages of fur are made from, by file name; a target without any draws no fur."""
+def stage_sources(target: str, what: str) -> dict[str, str]:
+    """The texts that stages of fur or strands are made from, by file name.
+
+    errors  UserError for a target without any, which draws none
+    """
     package: Any = importlib.import_module(f"targets.{target}")
-    folder = Path(package.__file__).parent / "fur"
+    folder = Path(package.__file__).parent / what
     if not folder.is_dir():
-        raise UserError(f"target {target} draws no fur; glsl and wgsl do")
+        raise UserError(f"target {target} draws no {what}; glsl and wgsl do")
     return {
         file.name: file.read_text(encoding="utf-8") for file in sorted(folder.iterdir()) if file.is_file()
     }

@@ -67,7 +67,10 @@ class Block:
         return bytes(data)
 
 
-_FRAME: tuple[tuple[str, Type | str, int], ...] = (
+FrameMember = tuple[str, Type | str, int]
+"""Name, type and how many; 0: as many as there are lights."""
+
+_FRAME: tuple[FrameMember, ...] = (
     ("view_projection", "mat4", 1),
     ("eye", VEC3, 1),
     ("coat_length", F32, 1),
@@ -88,14 +91,19 @@ _FRAME: tuple[tuple[str, Type | str, int], ...] = (
     ("light_direction", VEC4, 0),
     ("light_colour", VEC4, 0),
 )
-"""As in targets/glsl/fur/frame.glsl and targets/wgsl/fur/fur.wgsl; 0: as many as there are lights."""
+"""As in targets/glsl/fur/frame.glsl and targets/wgsl/fur/fur.wgsl."""
 
 
 def uniform_block(material: Iterable[tuple[str, Type]], lights: int = LEAST_LIGHTS) -> Block:
     """The block: members that every fur has, with room for so many lights, then those of a material."""
+    return block_of(_FRAME, material, lights)
+
+
+def block_of(frame: Iterable[FrameMember], material: Iterable[tuple[str, Type]], lights: int) -> Block:
+    """A block of members of a frame, with room for so many lights, then those of a material."""
     members = []
     end = 0
-    for name, type_, said in (*_FRAME, *((name, type_, 1) for name, type_ in material)):
+    for name, type_, said in (*frame, *((name, type_, 1) for name, type_ in material)):
         count = said or lights
         type_name = type_ if isinstance(type_, str) else type_.name
         components = 16 if type_name == "mat4" else getattr(type_, "size", 1)

@@ -46,6 +46,8 @@ class FurShading:
     paths     parameter -> what it is called in scenes, where that is not its own name
     lights    how many lights the uniform block holds
     shadowed  whether vertices say which share of the lights arrives at them
+    block     what the stages call their uniform block
+    known     what is folded into the loop over the lights, see codegen.fur.radiance
     """
 
     function: ir.Function
@@ -53,6 +55,13 @@ class FurShading:
     paths: Mapping[str, str] = field(default_factory=dict)
     lights: int = LEAST_LIGHTS
     shadowed: bool = False
+    block: str = "fur"
+    known: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def whole(self) -> bool:
+        """Whether the coat is known to be everywhere equally long and dense."""
+        return all(self.known.get(share) == 1.0 for share in SCALED.values())
 
     def statements(self, dialect: Dialect, prefix: str) -> list[str]:
         """Statements that leave in `reflected` what the function sends to the eye of one light.
@@ -93,7 +102,7 @@ class FurShading:
         if isinstance(type_, Struct):
             fields = tuple(self._argument(f.name, f.type, f"{path}.{f.name}", prefix) for f in type_.fields)
             return ir.Construct(Struct(prefix + type_.name, type_.fields), fields)
-        member = ir.Var(type_, f"fur.{member_name(path)}")
+        member = ir.Var(type_, f"{self.block}.{member_name(path)}")
         if path in SCALED:
             return ir.Binary(F32, "*", member, ir.Var(F32, SCALED[path]))
         return member
@@ -105,22 +114,40 @@ def member_name(path: str) -> str:
 
 
 def fixed_shading(
-    library: Library, shading: FurShading, material: Mapping[str, Any], painted: bool
+    library: Library,
+    shading: FurShading,
+    material: Mapping[str, Any],
+    painted: bool,
+    known: Mapping[str, Any] | None = None,
 ) -> tuple[Library, FurShading]:
     """The lighting of fur with a scene's parameters folded in, and the library that has it.
 
     material  value by path, as the scene states it
     painted   whether vertices scale length and density, which then stay members of the uniform block
+    known     what else is folded into the loop over the lights
     """
+    shares = {} if painted else dict.fromkeys(SCALED.values(), 1.0)
     constants = {path: value for path, value in material.items() if not (painted and path in SCALED)}
     made = specialise(library, shading.function.name, constants, new_name=f"{shading.function.name}_fixed")
     extended = library.with_functions([made.function])
     paths = {name: path for path, name in made.parameters.items()}
     folded = fur_shading(extended, made.function.name, paths)
-    return extended, replace(folded, lights=shading.lights, shadowed=shading.shadowed)
+    known = {**shares, **(known or {})}
+    return extended, replace(folded, lights=shading.lights, shadowed=shading.shadowed, known=known)
 
 
-def fur_shading(library: Library, name: str, paths: Mapping[str, str] | None = None) -> FurShading:
+def strand_shading(library: Library, name: str) -> FurShading:
+    """The lighting of strands by a function of the library; raises UserError as fur_shading does."""
+    shading = fur_shading(library, name, kind="strands")
+    for slot in shading.material:
+        if slot.path in SCALED:
+            raise UserError(f'{name} cannot shade strands: a strand has no "{slot.path}"')
+    return replace(shading, block="hair")
+
+
+def fur_shading(
+    library: Library, name: str, paths: Mapping[str, str] | None = None, kind: str = "fur"
+) -> FurShading:
     """The lighting of fur by a function of the library.
 
     paths   parameter -> what it is called in scenes, where that is not its own name
@@ -129,7 +156,7 @@ def fur_shading(library: Library, name: str, paths: Mapping[str, str] | None = N
     paths = paths or {}
     function = library.function(name)
     if function.returns != VEC3:
-        raise UserError(f"{name} cannot shade fur: it returns no colour")
+        raise UserError(f"{name} cannot shade {kind}: it returns no colour")
     slots = []
 
     def visit(path: str, type_: Type) -> None:
@@ -141,7 +168,8 @@ def fur_shading(library: Library, name: str, paths: Mapping[str, str] | None = N
         elif isinstance(type_, Scalar | Vector) and path != "map_tangent":
             slots.append(Slot(path, member_name(path), type_))
         else:
-            raise UserError(f'{name} cannot shade fur: a coat has no "{path}"')
+            owner = "coat" if kind == "fur" else "strand"
+            raise UserError(f'{name} cannot shade {kind}: a {owner} has no "{path}"')
 
     for parameter in function.parameters:
         visit(paths.get(parameter.name, parameter.name), parameter.type)

@@ -2,19 +2,22 @@
 
 A template calls library functions by their emitted names; what it calls decides what is emitted with it.
 A line of a template that ends with `//? shadowed` is for coats on which lights cast shadows, one that ends
-with `//? open` for all others.
+with `//? open` for all others; `//? painted` is for coats whose length and density may vary, `//? whole` for
+coats of which it is known that they do not.
 """
 
 from __future__ import annotations
 
 import re
 import textwrap
+from collections.abc import Collection, Mapping
 from string import Template
 
 from codegen.backends import dialect as find_dialect
-from codegen.backends import fur_stages
+from codegen.backends import stage_sources
 from codegen.emit.dialect import Dialect
 from codegen.emit.module import DEFAULT_PREFIX, emit_selection
+from codegen.fur.radiance import fur_lighting
 from codegen.fur.shading import FurShading
 from codegen.library import Library
 from codegen.version import VERSION
@@ -22,7 +25,7 @@ from codegen.version import VERSION
 DIALECTS = {"glsl": ("330", "es300"), "wgsl": ("wgsl",)}
 """Dialects in which the stages are written."""
 STAGES = ("base", "shell", "fin")
-_ONLY_FOR = re.compile(r" *//\? (shadowed|open)$")
+_ONLY_FOR = re.compile(r" *//\? (shadowed|open|painted|whole)$")
 _CALL = re.compile(rf"\b{DEFAULT_PREFIX}(\w+)\(")
 
 
@@ -32,50 +35,65 @@ def stage_texts(library: Library, shading: FurShading, target: str, dialect: str
     errors  UserError for a target or a dialect in which fur cannot be drawn
     """
     chosen = find_dialect(target, dialect)
-    lit = "shadowed" if shading.shadowed else "open"
-    sources = {name: _kept(text, lit) for name, text in fur_stages(target).items()}
-    frame = Template(sources.get("frame.glsl", "")).safe_substitute(
-        material=_indented(shading.members(chosen), 4), lights=shading.lights
-    )
-    lighting = Template(sources.get("lighting.glsl", "")).safe_substitute(
-        shading=_indented(shading.statements(chosen, DEFAULT_PREFIX), 8)
-    )
-    names = [n for n in sources if n.endswith(f".{target}") and target == "wgsl"]
-    names = names or [f"{stage}.{kind}" for stage in STAGES for kind in ("vert", "frag")]
+    coat = {"shadowed" if shading.shadowed else "open", "whole" if shading.whole else "painted"}
+    lighting = fur_lighting(library, shading).texts(chosen)
+    sources = {
+        name: Template(_kept(text, coat)).safe_substitute(lighting)
+        for name, text in stage_sources(target, "fur").items()
+    }
+    return fill(library, shading, chosen, sources, "fur by shells and fins")
+
+
+def fill(
+    library: Library, shading: FurShading, dialect: Dialect, sources: Mapping[str, str], what: str
+) -> dict[str, str]:
+    """Templates with the shading, the library functions they call, and the head of a file, by file name.
+
+    sources  of the target; frame.glsl, lighting.glsl and head-*.glsl are parts of its stages
+    what     the stages draw, for the head
+    """
+    members = _indented(shading.members(dialect), 4)
+    statements = _indented(shading.statements(dialect, DEFAULT_PREFIX), 8)
+    frame = Template(sources.get("frame.glsl", "")).safe_substitute(material=members, lights=shading.lights)
+    lighting = Template(sources.get("lighting.glsl", "")).safe_substitute(shading=statements)
+    head = sources.get(f"head-{dialect.name}.glsl", "").strip()
+    about = f"{what}, shaded by {shading.function.name}, {dialect.title}"
     texts = {}
-    for name in names:
-        filled = Template(sources[name]).safe_substitute(
+    for name, text in sources.items():
+        if name.endswith(".glsl"):
+            continue
+        filled = Template(text).safe_substitute(
             frame=frame.strip(),
             lighting=lighting.strip(),
-            material=_indented(shading.members(chosen), 4),
+            material=members,
             lights=shading.lights,
-            shading=_indented(shading.statements(chosen, DEFAULT_PREFIX), 8),
+            shading=statements,
         )
-        head = sources.get(f"head-{dialect}.glsl", "").strip()
-        texts[name] = _with_library(library, chosen, filled, head, shading.function.name)
+        texts[name] = _with_library(library, dialect, filled, head, about, shading.function.name)
     return texts
 
 
-def _kept(text: str, chosen: str) -> str:
+def _kept(text: str, chosen: Collection[str]) -> str:
     """The lines of a template for one kind of coat, without the marks."""
     lines = []
     for line in text.splitlines():
         mark = _ONLY_FOR.search(line)
-        if mark is None or mark.group(1) == chosen:
+        if mark is None or mark.group(1) in chosen:
             lines.append(line if mark is None else line[: mark.start()])
     return "\n".join(lines) + "\n"
 
 
-def _with_library(library: Library, dialect: Dialect, filled: str, head: str, model: str) -> str:
-    """A filled template with the functions that it calls, and the head of a file."""
+def _with_library(library: Library, dialect: Dialect, filled: str, head: str, about: str, model: str) -> str:
+    """A filled template with the functions that it calls, and the head of a file that names its sources."""
     called = list(dict.fromkeys(_CALL.findall(filled)))
     # Structs are constructed by name and come with the functions that take them.
     selection = library.select([name for name in called if name not in library.resolver.struct_names()])
     body = "\n".join(emit_selection(library, dialect, selection, DEFAULT_PREFIX))
+    sources = library.select([*(f.name for f in selection.functions), model])
     notes = [
-        f"// Vair {VERSION}: fur by shells and fins, shaded by {model}, {dialect.title}",
-        "// Generated by vair fur; do not edit.",
-        f"// Source hash {selection.source_hash}",
+        f"// Vair {VERSION}: {about}",
+        "// Generated by Vair; do not edit.",
+        f"// Source hash {sources.source_hash}",
         "// SPDX-License-Identifier: MIT",
     ]
     top = [head, *notes] if head else notes
