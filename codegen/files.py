@@ -42,7 +42,8 @@ def write_bytes(path: Path, data: bytes) -> None:
 def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write several files into a folder, made if need be, so that either all of them are new or none is.
 
-    They are first written beside the folder; files of other names that lie in it stay.
+    They are first written beside the folder; files of other names that lie in it stay. A name may lead into a
+    folder below it, with / between.
 
     raises  UserError where that is not possible
     """
@@ -54,12 +55,15 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     try:
         with tempfile.TemporaryDirectory(dir=parent, prefix=".vair-") as aside:
             for name, data in files.items():
-                (Path(aside) / name).write_bytes(data)
+                path = Path(aside) / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_bytes(data)
             folder.mkdir(exist_ok=True)
             for name in files:
                 if (folder / name).is_dir():
                     raise UserError(f'cannot write "{folder / name}": it is a folder')
             for name in files:
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
                 os.replace(Path(aside) / name, folder / name)
     except OSError as e:
         raise UserError(f'cannot write into "{folder}": {e.strerror}') from None
