@@ -40,12 +40,20 @@ NOTHING_NOTICED = (int(pytest.ExitCode.OK), int(pytest.ExitCode.NO_TESTS_COLLECT
 """Exit statuses of a mutant that no test noticed; one that leaves no test to run goes on to all tests."""
 
 
+COMPILED = "codegen/intervals/"
+"""Where loops are compiled, and constants of theirs defined."""
+LOOPS = ("codegen/intervals/kernels.py", "codegen/intervals/lanes.py")
+"""What is compiled. numba keeps it by file and time, and would take a mutant for the original."""
+
+
 def warm_up(tests: Sequence[str]) -> int:
     """Import all that these tests need by collecting them; returns pytest's exit status."""
     with contextlib.redirect_stdout(io.StringIO()) as told:
         status = int(pytest.main(["--collect-only", *QUIET, *AGAIN, *tests]))
     if status:
         print(told.getvalue()[-2000:])
+    with contextlib.suppress(ImportError):
+        importlib.import_module("numba")  # a second that no fork then spends
     return status
 
 
@@ -82,6 +90,17 @@ def forget(names: set[str]) -> None:
         package, _, last = name.rpartition(".")
         if package in sys.modules and hasattr(sys.modules[package], last):
             delattr(sys.modules[package], last)  # "from package import name" looks there first
+
+
+def forget_compiled(everything: bool) -> None:
+    """Keep nothing that is compiled from now on in this process; nor use what was kept, if `everything`."""
+    try:
+        kept = importlib.import_module("numba.core.caching").IndexDataCacheFile
+    except ImportError:
+        return  # no loops
+    kept.save = lambda *_: None
+    if everything:
+        kept.load = lambda *_: None
 
 
 class _Loader(importlib.machinery.SourceFileLoader):
@@ -160,6 +179,8 @@ class Session:
         """Run in this process with a file replaced; returns pytest's exit status. For forks only."""
         forget(set(self.stale))
         change.put()
+        if change.tree is not None and change.path.startswith(COMPILED):
+            forget_compiled(change.path in LOOPS)
         plugins: list[Any] = [Selection(self.chosen, self.excluded, self.without)]
         watch = Watch(ROOT, self.watched)
         if self.notes is not None:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.intervals import TABLES, arithmetic, load_table, logic, numbers, operations
+from codegen.intervals import TABLES, arithmetic, elementary, load_table, logic, numbers, operations
 from codegen.intervals.accuracy import Absolute, Exact, Rounded, Ulp, Unstated
 from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
@@ -277,3 +277,25 @@ def test_far_ends_make_sums_inexact(large: numbers.Reach, turned: bool) -> None:
     small = (1.0, 2.0, 1.0)
     assert not numbers.exact_sums(*((large, small) if turned else (small, large)))
     assert numbers.exact_sums(small, small)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize("turns", [0, 1, 1000, 10**6])
+def test_an_extreme_that_float64_cannot_place_may_be_held(turns: int, sign: float) -> None:
+    """An interval that ends two float64 short of an extreme may hold it; one that ends well short does not."""
+    extreme = math.pi / 2.0 + sign * turns * 2.0 * math.pi
+    step = 2.0 * np.spacing(abs(extreme))
+    inside, far = extreme - 0.5, extreme + 0.5
+    ends = [(inside, extreme - step), (extreme + step, far), (inside, far), (inside, extreme - 1e-3)]
+    low, high = (np.array(side) for side in zip(*ends, strict=True))
+    assert elementary._holds(Range(low, high), math.pi / 2.0).tolist() == [True, True, True, False]
+
+
+def test_the_first_operand_that_breaks_a_promise_is_named() -> None:
+    """atan2 checks x before y, and names no operand where the promise holds."""
+    table, context = load_table("wgsl"), Context(load_table("wgsl"), CauseBook(), 3)
+    assert table.row("atan2").normal
+    y, x = np.array([1e-40, 1e-40, 1.0]), np.array([2.0**127, 1.0, 2.0**127])
+    found = elementary.arc_tangent(context, Range(y, y), Range(x, x))
+    assert found.cause is not None
+    assert [context.book.causes[code - 1].operand for code in found.cause] == ["x", "y", "x"]
