@@ -282,7 +282,7 @@ def test_far_ends_make_sums_inexact(large: numbers.Reach, turned: bool) -> None:
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 @pytest.mark.parametrize("turns", [0, 1, 1000, 10**6])
 def test_an_extreme_that_float64_cannot_place_may_be_held(turns: int, sign: float) -> None:
-    """An interval that ends two float64 short of an extreme may hold it; one that ends well short does not."""
+    """An interval that ends two float64 short of an extreme may hold it; one that ends well short, not."""
     extreme = math.pi / 2.0 + sign * turns * 2.0 * math.pi
     step = 2.0 * np.spacing(abs(extreme))
     inside, far = extreme - 0.5, extreme + 0.5
