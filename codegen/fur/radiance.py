@@ -46,10 +46,10 @@ class Lighting:
     each: tuple[ir.Stmt, ...]
 
     def texts(self, dialect: Dialect) -> dict[str, str]:
-        """Both as they stand in a template, by the name of their place there."""
+        """Both as whole lines of a template, by the name of their place there."""
         printer = StmtPrinter(dialect)
         parts = {"before": printer.block(self.before, 4 * " "), "each": printer.block(self.each, 12 * " ")}
-        return {name: "\n".join(lines) for name, lines in parts.items()}
+        return {name: "".join(f"{line}\n" for line in lines) for name, lines in parts.items()}
 
 
 def fur_lighting(library: Library, shading: FurShading) -> Lighting:

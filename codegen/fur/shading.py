@@ -114,26 +114,29 @@ def member_name(path: str) -> str:
 
 
 def fixed_shading(
-    library: Library,
-    shading: FurShading,
-    material: Mapping[str, Any],
-    painted: bool,
-    known: Mapping[str, Any] | None = None,
+    library: Library, shading: FurShading, material: Mapping[str, Any], painted: bool
 ) -> tuple[Library, FurShading]:
     """The lighting of fur with a scene's parameters folded in, and the library that has it.
 
     material  value by path, as the scene states it
     painted   whether vertices scale length and density, which then stay members of the uniform block
-    known     what else is folded into the loop over the lights
     """
-    shares = {} if painted else dict.fromkeys(SCALED.values(), 1.0)
     constants = {path: value for path, value in material.items() if not (painted and path in SCALED)}
     made = specialise(library, shading.function.name, constants, new_name=f"{shading.function.name}_fixed")
     extended = library.with_functions([made.function])
     paths = {name: path for path, name in made.parameters.items()}
     folded = fur_shading(extended, made.function.name, paths)
-    known = {**shares, **(known or {})}
-    return extended, replace(folded, lights=shading.lights, shadowed=shading.shadowed, known=known)
+    return extended, folded_into(folded, shading, painted)
+
+
+def folded_into(
+    folded: FurShading, shading: FurShading, painted: bool, known: Mapping[str, Any] | None = None
+) -> FurShading:
+    """A folded lighting with the lights of the one it was made of, and what else is known of the coat."""
+    shares = {} if painted else dict.fromkeys(SCALED.values(), 1.0)
+    return replace(
+        folded, lights=shading.lights, shadowed=shading.shadowed, known={**shares, **(known or {})}
+    )
 
 
 def strand_shading(library: Library, name: str) -> FurShading:

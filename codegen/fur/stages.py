@@ -38,8 +38,7 @@ def stage_texts(library: Library, shading: FurShading, target: str, dialect: str
     coat = {"shadowed" if shading.shadowed else "open", "whole" if shading.whole else "painted"}
     lighting = fur_lighting(library, shading).texts(chosen)
     sources = {
-        name: Template(_kept(text, coat)).safe_substitute(lighting)
-        for name, text in stage_sources(target, "fur").items()
+        name: _with_parts(_kept(text, coat), lighting) for name, text in stage_sources(target, "fur").items()
     }
     return fill(library, shading, chosen, sources, "fur by shells and fins")
 
@@ -81,6 +80,13 @@ def _kept(text: str, chosen: Collection[str]) -> str:
         if mark is None or mark.group(1) in chosen:
             lines.append(line if mark is None else line[: mark.start()])
     return "\n".join(lines) + "\n"
+
+
+def _with_parts(text: str, parts: Mapping[str, str]) -> str:
+    """A template with parts that have lines of their own, of which there may be none."""
+    for name, part in parts.items():
+        text = text.replace(f"${name}\n", part)
+    return text
 
 
 def _with_library(library: Library, dialect: Dialect, filled: str, head: str, about: str, model: str) -> str:

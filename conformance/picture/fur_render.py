@@ -12,10 +12,12 @@ import numpy.typing as npt
 
 from codegen.backends import open_runtime
 from codegen.errors import UserError
+from codegen.fur.budget import cheaper_shading
 from codegen.fur.coat import FurMesh, grow
 from codegen.fur.kit import kit_files
 from codegen.fur.layout import LEAST_LIGHTS, Block, uniform_block
-from codegen.fur.shading import FurShading, fixed_shading, fur_shading
+from codegen.fur.radiance import BODY
+from codegen.fur.shading import FurShading, fixed_shading, folded_into, fur_shading
 from codegen.fur.stages import DIALECTS, stage_texts
 from codegen.fur.states import pass_states
 from codegen.library import Library
@@ -72,10 +74,16 @@ class FurStudio:
         return {"view_projection": matrix.T.reshape(-1), **frame}
 
     def fixed(self) -> FurStudio:
-        """The same with the scene's parameters folded into the lighting: fewer uniforms, less to compute."""
+        """The same with what the scene states folded into the lighting, as cheap as its budget permits."""
         material = {path: value if len(value) > 1 else value[0] for path, value in self.material.items()}
-        library, shading = fixed_shading(self.library, self.shading, material, any(self.fur.channels))
-        return replace(self, library=library, shading=shading)
+        painted, lights = any(self.fur.channels), self.picture.lights
+        brightest = max((max(light.colour) for light in lights), default=1.0)
+        made = cheaper_shading(
+            self.library, self.scene.path, self.shading, material, painted, len(lights), brightest
+        )
+        library, folded = made or fixed_shading(self.library, self.shading, material, painted)
+        known = dict(zip(BODY, self.fur.surface, strict=True))
+        return replace(self, library=library, shading=folded_into(folded, self.shading, painted, known))
 
     def kit(self) -> dict[str, bytes]:
         """The files that an engine needs, see codegen.fur.kit."""
