@@ -20,6 +20,7 @@ COMMANDS = {
     "list": "codegen.commands.list:command",
     "show": "codegen.commands.show:command",
     "emit": "codegen.commands.emit:command",
+    "where": "codegen.commands.where:command",
     "doctor": "codegen.commands.doctor:command",
     "env": "codegen.commands.env:command",
     "factor": "codegen.commands.factor:command",

@@ -10,10 +10,13 @@ import click
 from codegen.backends import dialect
 from codegen.choice import MEASURES, choose_all, describe
 from codegen.emit.dialect import with_half, with_precise
-from codegen.emit.module import emit
+from codegen.emit.frame import file_text
+from codegen.emit.module import include
 from codegen.errors import UserError
 from codegen.files import write_text
 from codegen.library import load_library
+from codegen.lines.directives import directives_of, with_directives
+from codegen.lines.linemap import as_json, map_of
 
 
 @click.command("emit")
@@ -45,6 +48,10 @@ from codegen.library import load_library
     show_default=True,
     help="With --max-error: what the error is measured in.",
 )
+@click.option("--line-directives", is_flag=True, help="State the source of each line by #line; not in WGSL.")
+@click.option(
+    "--map", "map_file", type=click.Path(path_type=Path), help="Write line -> function, source, line as JSON."
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write this file instead of printing.")
 def command(
     target: str,
@@ -55,6 +62,8 @@ def command(
     precision: str,
     max_error: float | None,
     measure: str,
+    line_directives: bool,
+    map_file: Path | None,
     output: Path | None,
 ) -> None:
     """Emit one self-contained include; all functions if none is named."""
@@ -68,7 +77,16 @@ def command(
         if precision == "half":
             raise UserError("--max-error chooses by errors in single precision; leave out --precision half")
         names = choose_names(target, names, max_error, measure)
-    text = emit(load_library(), chosen, names, prefix)
+    head, defined = include(
+        load_library(), chosen, names, prefix, " --line-directives" if line_directives else ""
+    )
+    directives = (
+        directives_of(chosen, defined, output.name if output else "include") if line_directives else None
+    )
+    text = with_directives(directives, head, defined) if directives else file_text(chosen, head, defined)
+    if map_file is not None:
+        numbers = directives.numbers if directives and not directives.by_name else None
+        write_text(map_file, as_json(map_of(chosen, text, defined, numbers)))
     if output is None:
         click.echo(text, nl=False)
     else:

@@ -39,7 +39,8 @@ def function_comment(
     order = [p.name for p in f.parameters] + [key for key in _TAIL if key in entries]
     note = {"variant": f"Variant of {f.base}.", "printed": f"As the lecture prints it; right: {f.base}."}
     summary = " ".join(filter(None, (f.doc.summary, note.get(f.kind, ""))))
-    return _comment(rename(summary), {key: rename(entries[key]) for key in order})
+    told = {key: rename(entries[key]) for key in order}
+    return _comment(rename(summary), {**told, "from": f"{f.place.path}:{f.place.line}"})
 
 
 def struct_comment(s: ir.StructDef, rename: Callable[[str], str]) -> list[str]:

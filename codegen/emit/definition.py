@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from codegen.emit.dialect import Dialect
 
@@ -26,11 +26,15 @@ class Definition:
     name     as it is emitted, with its prefix
     comment  lines above it
     code     lines of the definition
+    path     the source file that it says; empty where none is known
+    lines    the line of that file which each line of code says; 0 where none is known
     """
 
     name: str
     comment: tuple[str, ...]
     code: tuple[str, ...]
+    path: str = field(default="", compare=False)
+    lines: tuple[int, ...] = field(default=(), compare=False)
 
     @property
     def guard(self) -> str:

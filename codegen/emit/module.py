@@ -36,10 +36,23 @@ def default_prefix(dialect: Dialect) -> str:
 def emit(
     library: Library, dialect: Dialect, names: Sequence[str] | None = None, prefix: str | None = None
 ) -> str:
-    """The text of one self-contained include.
+    """The text of one self-contained include; the parameters are those of `include`."""
+    head, defined = include(library, dialect, names, prefix)
+    return file_text(dialect, head, defined)
+
+
+def include(
+    library: Library,
+    dialect: Dialect,
+    names: Sequence[str] | None = None,
+    prefix: str | None = None,
+    further: str = "",
+) -> tuple[list[str], list[Definition]]:
+    """The header and the definitions of one self-contained include.
 
     names    functions to emit with what they need; None for all public ones (in half precision: that have it)
     prefix   put before every name, structs included; default_prefix if None
+    further  options that the header names beside these
     raises   UserError for an unknown function, a prefix that cannot start a name, or a function that is of no
              use in half precision where the dialect asks for that
     """
@@ -55,10 +68,10 @@ def emit(
     source_hash = selection.source_hash
     if dialect.arithmetic == "half":
         source_hash = half_hash(library, source_hash)
-    head = emitted_header(dialect, source_hash, names, prefix)
+    head = emitted_header(dialect, source_hash, names, prefix, further)
     if dialect.arithmetic == "half" and dialect.half_enable:
         head += ["", dialect.half_enable]
-    return file_text(dialect, head, defined)
+    return head, defined
 
 
 def emit_selection(library: Library, dialect: Dialect, selection: Selection, prefix: str) -> list[str]:
@@ -82,12 +95,15 @@ def definitions(library: Library, dialect: Dialect, selection: Selection, prefix
         found += read_definitions(Template(library_text).substitute(prefix=prefix))
     for original, renamed in zip(selection.structs, unit.structs, strict=True):
         words = comment.struct_comment(original, rename)
-        found.append(Definition(renamed.type.name, tuple(words), tuple(printer.struct(renamed.type))))
+        code = tuple(printer.struct(renamed.type))
+        lines = (original.place.line,) * len(code)
+        found.append(Definition(renamed.type.name, tuple(words), code, original.place.path, lines))
     for version, f in zip(versions, unit.functions, strict=True):
         bounds = bounds_of(library, version)
         promised = guaranteed_of(library, version, dialect)
         words = comment.function_comment(version.source, bounds, dialect.target, rename, promised)
-        found.append(Definition(f.name, tuple(words), tuple(printer.function(f))))
+        texts, lines = zip(*printer.traced_function(f), strict=True)
+        found.append(Definition(f.name, tuple(words), texts, f.place.path, lines))
     return found
 
 
@@ -130,7 +146,7 @@ HALF_NOTE = (
 
 
 def emitted_header(
-    dialect: Dialect, source_hash: str, names: Sequence[str] | None, prefix: str
+    dialect: Dialect, source_hash: str, names: Sequence[str] | None, prefix: str, further: str = ""
 ) -> list[str]:
     """The header of what `emit` gives."""
     command = f"vair emit --target {dialect.target} --dialect {dialect.name}"
@@ -140,7 +156,7 @@ def emitted_header(
         command += " --precise"
     if prefix != default_prefix(dialect):
         command += f" --prefix {prefix}"
-    command += "".join(f" --function {name}" for name in names or ())
+    command += further + "".join(f" --function {name}" for name in names or ())
     return [
         *header(dialect, command, f"Source hash {source_hash}", CONVENTIONS),
         *(wrap.comment(HALF_NOTE, "// ", "// ") if dialect.arithmetic == "half" else ()),

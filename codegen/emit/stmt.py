@@ -9,6 +9,8 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import BOOL, F16, F32, TEXTURE, Array, Struct, Type, element_of, leaves
 
 _STEP = "    "
+Traced = tuple[str, int]
+"""A line of text, and the source line of the statement that it is part of; 0 where none is known."""
 
 
 class StmtPrinter:
@@ -67,34 +69,38 @@ class StmtPrinter:
 
     def block(self, body: tuple[ir.Stmt, ...], indent: str) -> list[str]:
         """The lines of a block."""
-        lines: list[str] = []
+        return [text for text, _ in self.traced(body, indent)]
+
+    def traced(self, body: tuple[ir.Stmt, ...], indent: str) -> list[Traced]:
+        """The same, each with the source line of its statement."""
+        lines: list[Traced] = []
         for s in body:
             match s:
                 case ir.Let():
-                    lines += wrap.code(self.let(s), indent)
+                    lines += _of(s.line, wrap.code(self.let(s), indent))
                 case ir.Assign():
-                    lines += wrap.code(f"{s.name} = {self.expr.show(s.value)};", indent)
+                    lines += _of(s.line, wrap.code(f"{s.name} = {self.expr.show(s.value)};", indent))
                 case ir.Return():
-                    lines += wrap.code(f"return {self.expr.show(s.value)};", indent)
+                    lines += _of(s.line, wrap.code(f"return {self.expr.show(s.value)};", indent))
                 case ir.If():
                     lines += self.branch(s, indent)
                 case ir.For():
                     lines += [
-                        f"{indent}{self.loop_head(s)}",
-                        *self.block(s.body, indent + _STEP),
-                        indent + "}",
+                        (f"{indent}{self.loop_head(s)}", s.line),
+                        *self.traced(s.body, indent + _STEP),
+                        (indent + "}", s.line),
                     ]
         return lines
 
-    def branch(self, s: ir.If, indent: str, lead: str = "") -> list[str]:
+    def branch(self, s: ir.If, indent: str, lead: str = "") -> list[Traced]:
         """The lines of an if; an if alone in the other side becomes "else if"."""
         head = wrap.code(f"{lead}if ({self.expr.show(s.condition)}) {{", indent)
-        lines = [*head, *self.block(s.then, indent + _STEP)]
+        lines = [*_of(s.line, head), *self.traced(s.then, indent + _STEP)]
         if len(s.orelse) == 1 and isinstance(s.orelse[0], ir.If):
             return [*lines, *self.branch(s.orelse[0], indent, "} else ")]
         if s.orelse:
-            lines += [indent + "} else {", *self.block(s.orelse, indent + _STEP)]
-        return [*lines, indent + "}"]
+            lines += [(indent + "} else {", s.line), *self.traced(s.orelse, indent + _STEP)]
+        return [*lines, (indent + "}", s.line)]
 
     def loop_head(self, s: ir.For) -> str:
         """The line that opens a loop."""
@@ -106,12 +112,17 @@ class StmtPrinter:
 
     def function(self, f: ir.Function) -> list[str]:
         """A whole definition."""
+        return [text for text, _ in self.traced_function(f)]
+
+    def traced_function(self, f: ir.Function) -> list[Traced]:
+        """The same, each line with its source line: that of the definition around the body."""
         parameters = ", ".join(part for p in f.parameters for part in self.parameter(p))
         if self.dialect.declaration == "name: type":
             head = f"fn {f.name}({parameters}) -> {self.type_name(f.returns)} {{"
         else:
             head = f"{self.dialect.qualifier}{self.type_name(f.returns)} {f.name}({parameters}) {{"
-        return [*wrap.code(head, ""), *self.block(f.body, _STEP), "}"]
+        line = f.place.line
+        return [*_of(line, wrap.code(head, "")), *self.traced(f.body, _STEP), ("}", line)]
 
     def struct(self, s: Struct) -> list[str]:
         """A struct definition."""
@@ -125,6 +136,10 @@ class StmtPrinter:
         if self.dialect.structs == "compound":
             return [f"typedef struct {s.name} {{", *fields, f"}} {s.name};"]
         return [f"struct {s.name} {{", *fields, "};"]
+
+
+def _of(line: int, lines: list[str]) -> list[Traced]:
+    return [(text, line) for text in lines]
 
 
 def holds_floats(type_: Type) -> bool:
