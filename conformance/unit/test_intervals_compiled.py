@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.intervals import TABLES, Permitted, compiled, permitted
+from codegen.intervals import TABLES, Permitted, arithmetic, compiled, permitted
 from codegen.library import Library, load_library
 from conformance.cases.drawing import UNIFORM, draw
 from conformance.metamorphic.pairs import columns
@@ -87,3 +87,20 @@ def test_functions_of_the_library(name: str, monkeypatch: pytest.MonkeyPatch) ->
     inputs = draw(library.function(name), UNIFORM, LANES)
     for table in ("wgsl", "opencl"):
         assert_equal(*both(monkeypatch, library, name, inputs, table))
+
+
+def test_numbers_beside_powers_of_two() -> None:
+    """Ends some float64 beside a power of two, where the spacing doubles: the same floats are in reach."""
+    pytest.importorskip("numba")
+    beside = np.array([1.0 + k * 2.0**-53 for k in (-64, -9, -8, -7, -2, 0, 2, 14, 16, 18, 64)])
+    wider = np.array([0.0, 2.0**-50, 2.0**-30, 2.0**-24, 2.0**-23, 2.0**-20])
+    low, more, sign = (a.ravel() for a in np.meshgrid(beside, wider, (-1.0, 1.0), indexing="ij"))
+    for power in (0, -3, 40):
+        ends = sign * low * 2.0**power, sign * (low + more) * 2.0**power
+        low_end, high_end = np.minimum(*ends), np.maximum(*ends)
+        for ulps in (0.0, 0.5, 1.0, 2.5):
+            with np.errstate(over="ignore"):
+                plain = arithmetic.within_ulp(low_end, high_end, ulps, ulps)
+            first, last, look = compiled.kernels().within_ulp(low_end, high_end, ulps, ulps, len(low_end))
+            assert not look
+            assert np.array_equal(first, plain[0]) and np.array_equal(last, plain[1])
