@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import time
 from collections.abc import Iterator, Mapping
@@ -178,6 +179,7 @@ def run(job: Job) -> dict[str, Any]:
     return sweep(load_library(), job.function, job.start, job.stop).entry()
 
 
+@functools.cache
 def intervals_hash() -> str:
     """Of everything that makes intervals: what was shown of others is stale."""
     digest = hashlib.sha256()
