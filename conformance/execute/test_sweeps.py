@@ -8,10 +8,10 @@ import pytest
 
 from codegen.library import load_library
 from conformance.executor import Here, Processes, available
+from conformance.executor.state import State
 from conformance.sweep import record
 from conformance.sweep.plan import SHORT_TOTAL, pieces, short
 from conformance.sweep.positions import sweepable
-from conformance.sweep.state import State
 from conformance.sweep.sweep import sweep
 from targets import TARGETS
 
