@@ -63,12 +63,6 @@ def frame_values(
     fur: Fur, mesh: FurMesh, camera: Camera, lights: tuple[Light, ...], material: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Values by member of the uniform block, without view_projection; `material` by a parameter's name."""
-    if len(lights) > MOST_LIGHTS:
-        raise UserError(f"fur is lit by at most {MOST_LIGHTS} lights, not {len(lights)}")
-    padded = np.zeros((len(lights), 4), np.float32), np.zeros((len(lights), 4), np.float32)
-    for k, light in enumerate(lights):
-        padded[0][k, :3] = unit(np.asarray(light.direction, np.float32))
-        padded[1][k, :3] = light.colour
     rho, cos_dark, cos_lit = fur.surface
     return {
         "eye": camera.eye,
@@ -81,13 +75,22 @@ def frame_values(
         "authored_layers": fur.authored_layers,
         "layers": fur.layers,
         "seed": fur.seed,
-        "light_count": len(lights),
         "fin_threshold": fur.fin_threshold,
         "rho_surface": rho,
         "cos_dark": cos_dark,
         "cos_lit": cos_lit,
         "fin_opacity": fur.fin_opacity,
-        "light_direction": padded[0],
-        "light_colour": padded[1],
+        **light_arrays(lights),
         **{member_name(path): value for path, value in material.items()},
     }
+
+
+def light_arrays(lights: tuple[Light, ...]) -> dict[str, Any]:
+    """The members of the block that hold the lights; raises UserError for too many."""
+    if len(lights) > MOST_LIGHTS:
+        raise UserError(f"fur and strands are lit by at most {MOST_LIGHTS} lights, not {len(lights)}")
+    directions, colours = np.zeros((2, len(lights), 4), np.float32)
+    for k, light in enumerate(lights):
+        directions[k, :3] = unit(np.asarray(light.direction, np.float32))
+        colours[k, :3] = light.colour
+    return {"light_count": len(lights), "light_direction": directions, "light_colour": colours}

@@ -16,9 +16,9 @@ import numpy.typing as npt
 import trimesh
 from trimesh.ray.ray_pyembree import RayMeshIntersector
 
-from codegen.fur.shading import SCALED
 from conformance.picture.fur_render import FurStudio
 from conformance.picture.shade import Backend
+from conformance.picture.stage_inputs import repeated, shading_inputs
 from conformance.picture.vectors import dot, unit
 from conformance.picture.visibility import barycentric
 
@@ -82,7 +82,7 @@ class March:
 
     def run(self, function: str, count: int, **inputs: Any) -> npt.NDArray[Any]:
         """A function of the library on the backend, for `count` sets of inputs; constants are repeated."""
-        arrays = {name: _repeated(value, count) for name, value in inputs.items()}
+        arrays = {name: repeated(value, count) for name, value in inputs.items()}
         return self.backend.evaluate(function, arrays)
 
     def _layer(self, layer: int) -> Varyings:
@@ -242,15 +242,7 @@ class March:
             given: dict[str, Any] = {"n": n, "t": t, "l": l, "v": v, "light": colour}
             if "h" in needed:
                 given["h"] = self.run("half_vector", count, l=l, v=v)
-            inputs: dict[str, Any] = {
-                name: _repeated(x, count) for name, x in given.items() if name in needed
-            }
-            for slot in shading.material:
-                constant = tuple(np.atleast_1d(self.studio.material[slot.path]))
-                value = _repeated(constant if len(constant) > 1 else constant[0], count)
-                value = value * scales[SCALED[slot.path]] if slot.path in SCALED else value
-                owner, _, field = slot.path.rpartition(".")
-                (inputs.setdefault(owner, {}) if owner else inputs)[field] = value
+            inputs = shading_inputs(shading, self.studio.material, given, count, scales)
             value = self.backend.evaluate(shading.function.name, inputs)
             surface = self.run(
                 "fur_surface_attenuation",
@@ -275,15 +267,6 @@ class March:
 def _shadows(vertices: npt.NDArray[Any]) -> Varyings:
     """The shares of lights that arrive at vertices, where lights cast shadows."""
     return {"lit": vertices["lit"]} if "lit" in (vertices.dtype.names or ()) else {}
-
-
-def _repeated(value: Any, count: int) -> npt.NDArray[Any]:
-    """Arrays as they are, in float32; a number or a tuple `count` times."""
-    array = np.asarray(value)
-    array = array.astype(np.float32) if array.dtype.kind == "f" else array
-    if isinstance(value, np.ndarray) and array.ndim:
-        return array
-    return np.broadcast_to(array, (count, *array.shape)).copy()
 
 
 def _first(hits: Hits) -> Hits:

@@ -1,4 +1,4 @@
-"""A picture of fur by any backend: the rasterisers of OpenGL and WebGPU, rays for all others."""
+"""A picture of fur or strands by any backend: the rasterisers of OpenGL and WebGPU, rays for all others."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from conformance.picture.backends import open_backend
 from conformance.picture.fur_march import March
 from conformance.picture.fur_render import FurStudio, develop, open_drawing, set_up_fur
 from conformance.picture.image import write_png
+from conformance.picture.strand_render import draw_strands, set_up_strands
 from conformance.picture.tone import eight_bit
 
 
@@ -42,5 +43,18 @@ def render_fur(library: Library, path: Path, target: str | None, output: Path) -
     studio = set_up_fur(library, path)
     chosen = target or studio.scene.targets[0]
     samples, driver = draw_fur(studio, chosen)
+    write_png(output, eight_bit(develop(studio.picture, samples)))
+    return chosen, driver
+
+
+def render_strands(library: Library, path: Path, target: str | None, output: Path) -> tuple[str, str]:
+    """Draw a scene's strands on a target (the scene's first one if None) and write the PNG.
+
+    returns  the target and its driver
+    errors   UserError
+    """
+    studio = set_up_strands(library, path)
+    chosen = target or studio.scene.targets[0]
+    samples, driver = draw_strands(studio, chosen)
     write_png(output, eight_bit(develop(studio.picture, samples)))
     return chosen, driver

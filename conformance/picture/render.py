@@ -12,7 +12,7 @@ import numpy.typing as npt
 from codegen.errors import UserError
 from codegen.library import Library
 from conformance.picture.backends import models, open_backend
-from conformance.picture.fur_picture import render_fur
+from conformance.picture.fur_picture import render_fur, render_strands
 from conformance.picture.image import write_png
 from conformance.picture.mesh import Mesh, read_mesh
 from conformance.picture.scene import Picture, Scene, read_scene
@@ -76,12 +76,16 @@ def set_up(path: Path, available: Models) -> Studio:
 def render(library: Library, scene: Path, target: str | None, output: Path) -> tuple[str, str]:
     """Shade a scene on a target (the scene's first one if None), write the PNG, return target and driver.
 
-    A scene with a [fur] table is drawn as shells and fins, by the stages that `vair fur` writes.
+    A scene with a [fur] table is drawn as shells and fins, by the stages that `vair fur` writes, one with a
+    [strands] table as ribbons.
 
     errors  UserError for a fault in the scene, the mesh or the output, and without a driver
     """
-    if read_scene(scene).fur is not None:
+    found = read_scene(scene)
+    if found.fur is not None:
         return render_fur(library, scene, target, output)
+    if found.hair is not None:
+        return render_strands(library, scene, target, output)
     studio = set_up(scene, models(library))
     backend = open_backend(target or studio.scene.targets[0], library)
     write_png(output, eight_bit(studio.develop(studio.shade(backend))))

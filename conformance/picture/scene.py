@@ -2,7 +2,7 @@
 
 The tables [scene], [shade], [parameters], [view] and [lights] say what is known of a scene; [render]
 adds what only a picture needs: a mesh, a camera, lights, how the surface is brushed; [fur] the coat
-on it, where it bears one.
+on it, where it bears one; [strands] the strands that are drawn in the place of a mesh.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from codegen.scene.description.document import BUDGETS
 from codegen.scene.description.tables import Table, is_number, read_tables, show
 from conformance.picture.brush import Brush
 from conformance.picture.fur_settings import Fur, read_fur
+from conformance.picture.strand_settings import Hair, read_hair
 from conformance.picture.visibility import Camera
 
 MOST_LIGHTS = 64
 """Lights of one kind."""
-TABLES = ("scene", "shade", "parameters", "view", "lights", "render", "fur")
+TABLES = ("scene", "shade", "parameters", "view", "lights", "render", "fur", "strands")
 
 Triple = tuple[float, float, float]
 Value = float | tuple[float, ...]
@@ -93,6 +94,7 @@ class Scene:
     lights       how many directional lights there are
     picture      None without a [render] table
     fur          None without a [fur] table
+    hair         None without a [strands] table
     """
 
     path: Path
@@ -105,6 +107,7 @@ class Scene:
     lights: int
     picture: Picture | None = field(default=None)
     fur: Fur | None = field(default=None)
+    hair: Hair | None = field(default=None)
 
 
 def read_scene(path: Path) -> Scene:
@@ -112,7 +115,10 @@ def read_scene(path: Path) -> Scene:
     tables = read_tables(path, TABLES)
     scene, shade, view, lights = (tables[name] for name in ("scene", "shade", "view", "lights"))
     sky = _sky(tables)
-    picture = _picture(tables["render"], sky) if tables["render"].content else None
+    hair, fur = read_hair(tables["strands"]), read_fur(tables["fur"])
+    if hair is not None and fur is not None:
+        raise UserError(f"{path}: has a [fur] and a [strands] table; a picture shows one of them")
+    picture = _picture(tables["render"], sky, hair) if tables["render"].content else None
     result = Scene(
         path=path,
         name=scene.text("name", path.stem),
@@ -123,7 +129,8 @@ def read_scene(path: Path) -> Scene:
         min_n_dot_v=view.number("min_n_dot_v", -1.0, 1.0, -1.0),
         lights=_lights(lights, picture),
         picture=picture,
-        fur=read_fur(tables["fur"]),
+        fur=fur,
+        hair=hair,
     )
     for table in (scene, shade, view, lights):
         table.close()
@@ -179,13 +186,13 @@ def _sky(tables: Mapping[str, Table]) -> Sky | None:
     return None
 
 
-def _picture(render: Table, sky: Sky | None) -> Picture:
+def _picture(render: Table, sky: Sky | None, hair: Hair | None) -> Picture:
     camera, brush, background = (render.table(name) for name in ("camera", "brush", "background"))
     lights = render.tables("light")
     if not lights and sky is None:
         raise UserError(f"{render.path}: [[render.light]] is missing: a picture needs a light")
     picture = Picture(
-        mesh=render.path.parent / render.text("mesh"),
+        mesh=hair.file if hair else render.path.parent / render.text("mesh"),
         size=_size(render),
         supersample=render.integer("supersample", 1, 8, 2),
         subdivide=render.integer("subdivide", 0, 4, 0),

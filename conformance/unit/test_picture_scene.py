@@ -10,6 +10,7 @@ import pytest
 
 from codegen.errors import UserError
 from codegen.library import load_library
+from codegen.strands.tfx import read_strands
 from conformance.picture.backends import models, open_backend
 from conformance.picture.mesh import read_mesh
 from conformance.picture.scene import Range, read_scene
@@ -31,7 +32,10 @@ def test_the_example_scenes_are_good(path: Path) -> None:
     shading = bind(scene, models(load_library()))
     assert shading.function == f"{scene.model}_shade"
     assert scene.picture is not None
-    assert read_mesh(scene.picture.mesh).triangles.shape == (3674, 3)
+    if scene.hair is not None:
+        assert read_strands(scene.picture.mesh).shape == (743, 32, 3)
+    else:
+        assert read_mesh(scene.picture.mesh).triangles.shape == (3674, 3)
 
 
 def test_a_scene_without_a_picture_may_be_short(tmp_path: Path) -> None:

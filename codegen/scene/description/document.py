@@ -20,7 +20,7 @@ from codegen.scene.description.settings import Setting, read_settings
 from codegen.scene.description.tables import Table, read_tables, show
 from codegen.scene.description.view import Facts, read_facts
 
-TABLES = ("scene", "shade", "parameters", "view", "lights", "render", "fur")
+TABLES = ("scene", "shade", "parameters", "view", "lights", "render", "fur", "strands")
 HALF_STEP = 1.0 / 510.0
 BUDGETS = {"exact": 0.0, "quarter-step-8bit": 0.5 * HALF_STEP, "half-step-8bit": HALF_STEP}
 """Named budgets: the largest absolute error of the shaded value. An 8-bit step is 1/255; rounding to the
