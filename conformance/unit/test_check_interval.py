@@ -107,6 +107,13 @@ def test_unguaranteed_results_count_for_nothing(judge: Judge) -> None:
     assert bad.failed == (PERMITTED,)
 
 
+@pytest.mark.parametrize("got", [NAN, INF, -INF])
+def test_what_is_no_number_lies_outside_even_around_zero(judge: Judge, got: float) -> None:
+    result = judge(IDENTITY, {"x": [0.0]}, [got], expected=lambda x: np.zeros(1))
+    assert result.failed == (FINITE, PERMITTED)
+    assert counts(result) == (1, 0, 0, 1, 0)
+
+
 def test_function_without_any_guarantee_is_not_permitted(judge: Judge) -> None:
     result = judge(QUOTIENT, {"x": [0, 0]}, [1, 2])
     assert (result.interval_verdict, result.failed) == (UNGUARANTEED, ())

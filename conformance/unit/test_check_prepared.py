@@ -64,6 +64,22 @@ def test_costly_function_is_followed_in_part() -> None:
         assert all(found.cause(k) == wanted.cause(k) for k in np.flatnonzero(lanes))
 
 
+def test_costly_function_is_not_followed_on_all_lanes(monkeypatch: pytest.MonkeyPatch) -> None:
+    library = load_library()
+    name = next(n for n in library.public if fnmatchcase(n, prepared.COSTLY[0]))
+    ready = prepare(library, name, small(name)[:1])
+    called: list[tuple[int, bool]] = []
+
+    def watched(library: Any, name: str, inputs: Any, table: str, follow_forks: bool = True) -> Any:
+        called.append((len(next(iter(inputs.values()))), follow_forks))
+        return permitted(library, name, inputs, table, follow_forks=False)
+
+    monkeypatch.setattr(prepared, "permitted", watched)
+    ready.permitted("wgsl")
+    lanes = ready.sample.lanes
+    assert called == [(lanes, False), (-(-lanes // prepared.FOLLOWED), True)]
+
+
 def test_printed_form_has_a_reference_of_its_own_or_none() -> None:
     library = load_library()
     assert all(has_reference(library, name) for name in library.public)
