@@ -26,10 +26,13 @@ export async function openBackend(asked, newCanvas) {
       const sentence = refusals.length > 0 ? `${refusals[0].replace(/\.$/, "")}; ${title} draws instead.` : "";
       return { name, renderer: opened, sentence };
     } catch (error) {
-      if (!(error instanceof refusal)) {
+      if (error instanceof refusal) {
+        refusals.push(error.message);
+      } else if (error instanceof DOMException) {
+        refusals.push(`${title} fails on this device.`);
+      } else {
         throw error;
       }
-      refusals.push(error.message);
     }
   }
   throw new NothingDraws("This browser offers neither WebGPU nor WebGL2, one of which the picture needs.");

@@ -1,4 +1,4 @@
-// Where the picture is taken from: a turntable in front of a camera, as matrices of either graphics interface.
+// Where the picture is taken from: a turntable in front of a camera, for either graphics interface.
 
 import { add, cross, dot, length, scale, subtract, turned, unit } from "./vectors.js";
 
@@ -10,17 +10,18 @@ export const FARTHEST = 2.5;
 /** Depth at the near plane by interface; at the far plane it is 1. */
 export const DEPTH_FROM = { opengl: -1, webgpu: 0 };
 
-/** How the body is turned (radians, yaw about the upright axis) and how far the camera is, 1 as in the scene. */
+/** How the body is turned (radians, yaw about the upright axis) and how far the camera is (1: the scene's). */
 export const REST = Object.freeze({ yaw: 0, pitch: 0, distance: 1 });
 
 /** The pose within what can be shown. */
 export function limited(pose, camera) {
   const elevation = elevationOf(camera);
-  const pitch = Math.min(Math.max(elevation + pose.pitch, -STEEPEST), STEEPEST) - elevation;
-  return { yaw: pose.yaw, pitch, distance: Math.min(Math.max(pose.distance, CLOSEST), FARTHEST) };
+  const within = (x, least, most) => Math.min(Math.max(x, least), most);
+  const pitch = within(pose.pitch, -STEEPEST - elevation, STEEPEST - elevation);
+  return { yaw: pose.yaw, pitch, distance: within(pose.distance, CLOSEST, FARTHEST) };
 }
 
-/** The scene's camera for a pose, in the frame of the body. Yaw turns the body, so its camera runs the other way. */
+/** The scene's camera for a pose, in the frame of the body: yaw turns the body, so its camera runs back. */
 export function posed(camera, pose) {
   const up = unit(camera.up);
   const right = unit(cross(subtract(camera.target, camera.eye), up));

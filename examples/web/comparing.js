@@ -1,4 +1,4 @@
-// The chosen variant against the default one in this browser: frame times in turns, and how the pictures differ.
+// The chosen variant against the base in this browser: frame times in turns, and how the pictures differ.
 
 import { brief, counted, quartiles } from "./numbers.js";
 
@@ -45,7 +45,7 @@ export function sentence(result, names, device, picture) {
     `Pictures differ by ${brief(steps.mean)} 8-bit steps on average, ${steps.largest} at most, ` +
     `${brief(100 * steps.equal, 3)} % of the pixels by less than 2. ` +
     `A frame of ${names[1]} takes ${median} × that of ${names[0]} (quartiles ${low} to ${high}). ` +
-    `${device}; ${picture.width} × ${picture.height} pixels of ${counted(picture.side ** 2, "sample")}, as shown; ` +
+    `${device}; ${picture.width} × ${picture.height} pixels of ${counted(picture.side ** 2, "sample")}; ` +
     `wall clock, ${rounds} rounds of A B B A, ${counted(frames, "frame")} a timing.`
   );
 }

@@ -1,4 +1,4 @@
-// One frame: what a kit, the parameters that were set and the pose make of the uniform block and the draw calls.
+// One frame: what kit, parameters and pose make of the uniform block and the draw calls.
 
 import { DEPTH_FROM, inBody, meshBall, posed, viewProjection } from "./camera.js";
 import { Uniforms } from "./uniforms.js";

@@ -1,4 +1,4 @@
-// A kit, the folder that `vair fur` writes: fur.json, its stages and its buffers, checked before anything is drawn.
+// A kit, the folder that `vair fur` writes: fur.json, stages and buffers, checked before anything is drawn.
 
 export const FORMAT = 1;
 
@@ -35,6 +35,7 @@ export class Kit {
   }
 }
 
+const AGAIN = "generate the page anew with “vair demo web”.";
 const files = new Map();
 
 /** Reads a kit; `language` is "glsl" or "wgsl". Throws KitError. */
@@ -59,7 +60,7 @@ export async function readJson(address) {
   try {
     return JSON.parse(text);
   } catch {
-    throw new KitError(`${shown(address)} is not JSON; generate the page anew with “vair demo web”.`);
+    throw new KitError(`${shown(address)} is not JSON; ${AGAIN}`);
   }
 }
 
@@ -94,11 +95,11 @@ async function fetched(url, as) {
 function checked(about, address) {
   const where = shown(address);
   if (about === null || typeof about !== "object" || about.format !== FORMAT) {
-    throw new KitError(`${where} is not a kit of format ${FORMAT}; generate the page anew with “vair demo web”.`);
+    throw new KitError(`${where} is not a kit of format ${FORMAT}; ${AGAIN}`);
   }
   for (const key of ["scene", "shading", "passes", "buffers", "uniforms", "view_projection"]) {
     if (typeof about[key] !== "object" || about[key] === null) {
-      throw new KitError(`${where} has no “${key}”; generate the page anew with “vair demo web”.`);
+      throw new KitError(`${where} has no “${key}”; ${AGAIN}`);
     }
   }
   for (const pass of about.passes) {

@@ -14,7 +14,8 @@ export function brief(x, digits = 2) {
 }
 
 function superscript(exponent) {
-  return [...String(exponent)].map((c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)])).join("");
+  const raised = (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(c)]);
+  return [...String(exponent)].map(raised).join("");
 }
 
 /** "1 frame", "2 frames". */

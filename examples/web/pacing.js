@@ -5,7 +5,7 @@ const REST_AFTER = 250; // milliseconds without a change until the picture is dr
 const COARSEST = 0.25;
 
 export class Pacing {
-  /** `draw(share)` draws a frame with that share of the pixels along either side, and resolves when it is done. */
+  /** `draw(share)` draws a frame with that share of the pixels along a side; it resolves to whether it drew. */
   constructor(draw) {
     this.drawFrame = draw;
     this.share = 1;

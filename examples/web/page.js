@@ -7,30 +7,27 @@ import { compare, sentence } from "./comparing.js";
 import { Controls, make } from "./controls.js";
 import { Frame } from "./frame.js";
 import { KitError, loadKit, readJson } from "./kit.js";
-import { showRecorded } from "./measured.js";
-import { counted } from "./numbers.js";
+import { Losses } from "./losses.js";
 import { Pacing } from "./pacing.js";
+import { at, showChoice, showComparison, showDetails, showMissing, showPicture, tell } from "./showing.js";
 import { Turning } from "./turning.js";
 
 const FORMAT = 1; // of web.json
-const MOST_SIDE = 1024; // pixels along a side of the picture
-const MOST_LOSSES = 2; // of a backend, until the other one is tried
-const RECENT = 30000; // milliseconds for which a loss is remembered
+const MOST_PIXELS = 1024; // along a side of the picture
 const RETRY_AFTER = 400; // milliseconds between a lost context and the next one
-
-const at = (id) => document.getElementById(id);
+const FIXED = ["pixels", "side"]; // kept in the address as they were given
 
 class Page {
   constructor(plan) {
     this.plan = plan;
     this.address = readAddress();
-    this.losses = [];
-    this.turn = 0; // counts what was asked for; an answer to an older question is dropped
     this.shading = this.find(this.address.get("shading")) ?? plan.shadings[0];
     this.backend = this.address.get("backend") in BACKENDS ? this.address.get("backend") : "webgpu";
     this.pacing = new Pacing((share) => this.draw(share));
-    this.frames = new Map();
-    this.opened = false;
+    this.losses = new Losses();
+    this.frames = new Map(); // by shading function, for the renderer that is open
+    this.ready = false; // whether there is something to draw
+    this.turn = 0; // counts what was asked for: an answer to an older question is dropped
     this.count = 0; // frames drawn
   }
 
@@ -39,12 +36,12 @@ class Page {
   }
 
   /** Opens a backend and draws with it; says the sentence, or why another backend draws. */
-  async useBackend(name, sentence = "") {
+  async useBackend(name, said = "") {
     const turn = ++this.turn;
+    this.ready = false;
     this.renderer?.release();
     this.renderer = null;
     this.frames.clear();
-    this.opened = false;
     const opened = await openBackend(name, newCanvas);
     if (turn !== this.turn) {
       opened.renderer.release();
@@ -54,10 +51,9 @@ class Page {
     this.renderer = opened.renderer;
     this.renderer.onLost = () => this.lost(opened.renderer);
     if (opened.sentence) {
-      const missing = document.querySelector(`input[name="backend"][value="${name}"]`);
-      missing.disabled = true;
+      showMissing(name);
     }
-    tell(opened.sentence || sentence);
+    tell(opened.sentence || said);
     await this.useShading(this.shading);
   }
 
@@ -65,38 +61,38 @@ class Page {
   async useShading(shading) {
     const turn = ++this.turn;
     this.shading = shading;
-    this.showChoices();
+    showChoice(this.plan, shading, this.backend);
     const frame = await this.frameOf(shading);
     if (turn !== this.turn) {
       return;
     }
     this.frame = frame;
     this.setUp(frame);
-    for (const [path, value] of this.controls.differing()) {
-      this.set(frame, path, value);
-    }
+    this.apply(frame);
     this.controls.markUnused(shading.unused);
-    this.opened = true;
+    this.remember();
+    this.ready = !this.renderer.gone;
     this.pacing.settled();
   }
 
   /** The frame of a shading function, ready to be drawn. */
   async frameOf(shading) {
-    const { renderer } = this;
-    if (!this.frames.has(shading.name)) {
+    const { renderer, frames } = this;
+    if (!frames.has(shading.name)) {
       const kit = await loadKit(shading.kit, renderer.language);
       await renderer.prepare(kit);
-      this.frames.set(shading.name, new Frame(kit, renderer.depth));
+      frames.set(shading.name, new Frame(kit, renderer.depth));
     }
-    return this.frames.get(shading.name);
+    return frames.get(shading.name);
   }
 
-  /** What needs a first kit: its camera and the values of its scene. */
+  /** What needs a first kit, for the camera and the values of its scene. */
   setUp(frame) {
     if (this.controls) {
       return;
     }
-    this.controls = new Controls(at("parameters"), this.plan, (path) => frame.initial(path), () => this.changed());
+    const initial = (path) => frame.initial(path);
+    this.controls = new Controls(at("parameters"), this.plan, initial, () => this.changed());
     for (const { sets } of this.plan.parameters) {
       const given = this.address.get(sets[0])?.split(",").map(Number);
       if (given?.every(Number.isFinite)) {
@@ -104,27 +100,29 @@ class Page {
       }
     }
     this.turning = new Turning(at("stage"), frame.kit.about.scene.camera, () => this.moved());
-    const [yaw, pitch, distance] = ["yaw", "pitch", "distance"].map((key) => Number(this.address.get(key) ?? REST[key]));
-    if ([yaw, pitch, distance].every(Number.isFinite)) {
-      this.turning.set({ yaw, pitch, distance });
+    const pose = Object.entries(REST).map(([key, value]) => [key, Number(this.address.get(key) ?? value)]);
+    if (pose.every(([, value]) => Number.isFinite(value))) {
+      this.turning.set(Object.fromEntries(pose));
     }
     new ResizeObserver(() => this.pacing.settled()).observe(at("stage"));
-    at("compare").disabled = this.shading.name === this.plan.base;
   }
 
-  set(frame, path, value) {
-    const entry = this.plan.parameters.find(({ sets }) => sets[0] === path);
-    entry.sets.forEach((member) => frame.set(member, value));
+  /** Sets in a frame what was set with the controls. */
+  apply(frame) {
+    for (const [path, value] of this.controls.differing()) {
+      const { sets } = this.plan.parameters.find((entry) => entry.sets[0] === path);
+      sets.forEach((member) => frame.set(member, value));
+    }
   }
 
   changed() {
     if (this.controls.differing().length === 0) {
-      this.frames.clear(); // of frames that were changed
+      this.frames.clear(); // they hold what was set before
       this.useShading(this.shading).catch(report);
     } else {
-      this.controls.differing().forEach(([path, value]) => this.set(this.frame, path, value));
+      this.apply(this.frame);
+      this.moved();
     }
-    this.moved();
   }
 
   moved() {
@@ -133,35 +131,34 @@ class Page {
   }
 
   remember() {
-    const given = Object.fromEntries(this.controls.differing().map(([path, value]) => [path, brief(value)]));
     const pose = Object.entries(this.turning.pose).filter(([key, value]) => value !== REST[key]);
-    const fixed = ["pixels", "side"].map((key) => [key, this.address.get(key)]);
+    const short = (value, digits) => [value].flat().map((x) => Number(x.toPrecision(digits))).join(",");
     writeAddress({
       backend: this.backend,
       shading: this.shading.name,
-      ...given,
-      ...Object.fromEntries(pose.map(([key, value]) => [key, value.toFixed(4)])),
-      ...Object.fromEntries(fixed),
+      ...Object.fromEntries(this.controls.differing().map(([path, value]) => [path, short(value, 6)])),
+      ...Object.fromEntries(pose.map(([key, value]) => [key, short(value, 4)])),
+      ...Object.fromEntries(FIXED.map((key) => [key, this.address.get(key)])),
     });
   }
 
-  /** Draws a frame; resolves to whether there was one to draw. */
+  /** Draws a frame with a share of the pixels along either side; resolves to whether there was one to draw. */
   async draw(share) {
     const { renderer } = this;
-    if (!renderer || !this.opened) {
+    if (!renderer || !this.ready) {
       return false;
     }
-    this.picture = this.size(share);
+    const picture = this.size(share);
     try {
-      this.drawn(this.frame, this.picture);
+      this.drawn(this.frame, picture);
     } catch (error) {
-      if (error instanceof DOMException) {
-        this.lost(renderer);
-        return false;
+      if (!(error instanceof DOMException)) {
+        throw error;
       }
-      throw error;
+      this.lost(renderer);
+      return false;
     }
-    this.showStatus(share);
+    showPicture(this.backend, renderer, picture, this.frame.instances().shell + 1, share < 1);
     await renderer.finished();
     this.count++;
     return true;
@@ -175,97 +172,51 @@ class Page {
   /** Pixels and samples of a picture; the address may fix both. */
   size(share) {
     const { top, bottom } = this.frame.kit.about.scene.background;
-    const fixed = Number(this.address.get("pixels"));
     const density = Math.min(window.devicePixelRatio || 1, 2);
-    const full = fixed > 0 ? fixed : Math.min(at("stage").clientWidth * density, MOST_SIDE);
-    const pixels = Math.max(Math.round(fixed > 0 ? full : full * share), 16);
+    const shown = Math.min(at("stage").clientWidth * density, MOST_PIXELS);
+    const pixels = Number(this.address.get("pixels")) || Math.max(Math.round(shown * share), 16);
     const side = Number(this.address.get("side")) || (share === 1 && density < 1.5 ? 2 : 1);
     return { width: pixels, height: pixels, side, top, bottom };
   }
 
-  /** The context went away: tries again, then with the other backend, then no more. */
+  /** A renderer's context went away; told once of each. */
   lost(renderer) {
-    if (renderer !== this.renderer) {
+    if (renderer !== this.renderer || renderer.gone) {
       return;
     }
-    this.opened = false;
-    const now = performance.now();
-    const recent = this.losses.filter(({ when }) => now - when < RECENT);
-    this.losses = [...recent, { backend: this.backend, when: now }];
-    const counted = this.losses.filter(({ backend }) => backend === this.backend).length;
-    const [other] = Object.keys(BACKENDS).filter((name) => name !== this.backend);
-    let next = this.backend;
-    if (counted > MOST_LOSSES) {
-      next = this.losses.some(({ backend }) => backend === other) ? null : other;
-    }
-    if (next === null) {
-      tell("The graphics driver keeps taking the picture away; reload the page to try again.");
-      return;
-    }
-    const { title } = BACKENDS[this.backend];
-    const sentence =
-      next === this.backend
-        ? `The graphics driver took the context of ${title} away; it is being set up again.`
-        : `The graphics driver keeps taking the context of ${title} away; ${BACKENDS[next].title} draws instead.`;
-    tell(sentence);
-    const { turn } = this;
+    renderer.gone = true;
+    this.ready = false;
+    const { next, sentence: said } = this.losses.count(this.backend);
+    tell(said);
     setTimeout(() => {
-      if (turn === this.turn) {
-        this.useBackend(next, next === this.backend ? "" : sentence).catch(report);
+      if (next !== null && renderer === this.renderer) {
+        this.useBackend(next, next === this.backend ? "" : said).catch(report);
       }
     }, RETRY_AFTER);
   }
 
+  /** Compares the chosen variant with the base, here and now. */
   async compare() {
-    const base = this.find(this.plan.base);
-    const shading = this.shading;
-    const button = at("compare");
-    button.disabled = true;
-    at("compared").textContent = "Drawing both in turns …";
-    const frame = await this.frameOf(base);
-    this.controls.differing().forEach(([path, value]) => this.set(frame, path, value));
+    const { plan, shading, renderer, backend } = this;
+    showComparison(plan, shading, "Drawing both in turns …");
+    at("compare").disabled = true;
+    const base = await this.frameOf(this.find(plan.base));
+    this.apply(base);
     const picture = this.size(1);
-    const draws = [frame, this.frame].map((each) => () => this.drawn(each, picture));
-    const { renderer } = this;
-    const result = await this.pacing.exclusively(() =>
+    const draws = [base, this.frame].map((frame) => () => this.drawn(frame, picture));
+    const measured = await this.pacing.exclusively(() =>
       compare(draws, () => renderer.finished(), () => captured(renderer.canvas)),
     );
-    button.disabled = false;
-    if (shading === this.shading) {
-      const device = `${BACKENDS[this.backend].title} on ${renderer.device}`;
-      at("compared").textContent = sentence(result, [base.name, shading.name], device, picture);
+    if (shading === this.shading && renderer === this.renderer) {
+      const device = `${BACKENDS[backend].title} on ${renderer.device}`;
+      showComparison(plan, shading, sentence(measured, [plan.base, shading.name], device, picture));
     }
-  }
-
-  showChoices() {
-    const { plan, shading, backend } = this;
-    document.querySelector(`input[name="backend"][value="${backend}"]`).checked = true;
-    document.querySelector(`input[name="formulas"][value="${shading.formulas}"]`).checked = true;
-    const options = plan.shadings.filter((other) => other.formulas === shading.formulas);
-    at("variant").replaceChildren(
-      ...options.map((other) => new Option(`${other.label}: ${other.name}`, other.name, false, other === shading)),
-    );
-    at("variant").disabled = options.length === 1;
-    at("note").textContent = shading.note;
-    at("compared").textContent = "";
-    at("compare").textContent = `Compare with ${plan.base} in this browser`;
-    at("compare").disabled = shading.name === plan.base;
-    showRecorded(at("recorded"), plan, shading, backend);
-    if (this.turning) {
-      this.remember();
-    }
-  }
-
-  showStatus(share) {
-    const { width, height, side } = this.picture;
-    const coarse = share < 1 ? ", fewer while it moves" : "";
-    at("status").textContent = `${BACKENDS[this.backend].title} on ${this.renderer.device}: ` +
-      `${width} × ${height} pixels of ${counted(side * side, "sample")}${coarse}; ${this.frame.instances().shell + 1} layers.`;
   }
 
   listen() {
-    at("choices").addEventListener("submit", (event) => event.preventDefault());
-    at("parameters").addEventListener("submit", (event) => event.preventDefault());
+    for (const form of ["choices", "parameters"]) {
+      at(form).addEventListener("submit", (event) => event.preventDefault());
+    }
     at("choices").addEventListener("change", ({ target }) => {
       if (target.name === "backend") {
         this.useBackend(target.value).catch(report);
@@ -277,7 +228,7 @@ class Page {
       }
     });
     at("compare").addEventListener("click", () => this.compare().catch(report));
-    at("reset").addEventListener("click", () => this.controls.reset());
+    at("reset").addEventListener("click", () => this.controls?.reset());
   }
 }
 
@@ -296,22 +247,13 @@ function captured(canvas) {
   return context.getImageData(0, 0, canvas.width, canvas.height).data;
 }
 
-const brief = (value) => [value].flat().map((x) => Number(x.toPrecision(6))).join(",");
-
-/** Shows a sentence, or none. */
-function tell(text) {
-  at("message").textContent = text;
-  at("message").hidden = text === "";
-}
-
 /** Tells what the reader can do something about; anything else is a fault of the page and goes on its way. */
 function report(error) {
-  if (error instanceof KitError || error instanceof NothingDraws) {
-    tell(error.message);
-    at("status").textContent = "";
-    return;
+  if (!(error instanceof KitError || error instanceof NothingDraws)) {
+    throw error;
   }
-  throw error;
+  tell(error.message);
+  at("status").textContent = "";
 }
 
 async function start() {
@@ -319,6 +261,7 @@ async function start() {
   if (plan?.format !== FORMAT) {
     throw new KitError(`web.json is not of format ${FORMAT}; generate the page anew with “vair demo web”.`);
   }
+  showDetails();
   const page = new Page(plan);
   page.listen();
   window.page = page; // for the console, and for tests

@@ -45,7 +45,8 @@ export class WebgpuRenderer {
     this.meshes = new Map();
     this.target = null;
     this.block = null;
-    this.development = device.createBuffer({ size: 32, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
+    const usage = GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST;
+    this.development = device.createBuffer({ size: 32, usage });
     this.layout = device.createBindGroupLayout({
       entries: [
         {
@@ -188,7 +189,8 @@ async function moduleOf(device, name, code) {
   await device.popErrorScope();
   const error = messages.find((message) => message.type === "error");
   if (error) {
-    throw new KitError(`WebGPU does not accept the shaders of ${name}: line ${error.lineNum}, ${error.message}.`);
+    const said = `line ${error.lineNum}, ${firstLine(error.message)}`;
+    throw new KitError(`WebGPU does not accept the shaders of ${name}: ${said}.`);
   }
   return module;
 }

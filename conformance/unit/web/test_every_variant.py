@@ -91,5 +91,5 @@ def test_variants_are_chosen_by_keys(whole: Opened) -> None:
     assert "squarings" in whole.waited("#note", "Rational")
     whole.settle(frames)
     assert "shading=fakefur_shade_rational_sq16" in whole.run("return location.hash")
-    assert whole.text(".headline").startswith("0.")
+    assert whole.text("#recorded").startswith("0.")
     assert whole.console() == []

@@ -47,6 +47,25 @@ def test_a_lost_context_is_set_up_again(loud_page: Opened, backend: str) -> None
     assert_same(page.pixels(), before)
 
 
+def test_a_reader_is_told_when_nothing_helps(page: Opened) -> None:
+    page.load(backend="webgl2")
+    page.settle()
+    told = page.run(
+        "const losses = new page.losses.constructor(); const times = [0, 1, 2, 3, 4, 5, 6, 40000];"
+        "const lost = ['webgl2', 'webgl2', 'webgl2', 'webgpu', 'webgpu', 'webgpu', 'webgl2', 'webgpu'];"
+        "return times.map((when, k) => losses.count(lost[k], when))"
+    )
+    assert [each["next"] for each in told] == [
+        *("webgl2", "webgl2", "webgpu"),
+        *("webgpu", "webgpu", None),
+        None,
+        "webgpu",
+    ], "two more tries each, and what is long ago counts no more"
+    assert told[5]["sentence"] == (
+        "The graphics driver keeps taking the picture away; reload the page to try again."
+    )
+
+
 @pytest.mark.nightly
 def test_a_context_lost_again_and_again_leaves_it_to_the_other_backend(loud_page: Opened) -> None:
     page = loud_page

@@ -129,10 +129,10 @@ def test_switches_work_by_keys_and_name_error_and_time(page: Opened) -> None:
     frames = page.settle(frames)
     assert "shading=fakefur_shade_printed" in page.run("return location.hash")
     assert_changed(page.pixels(), right)
-    assert "against the right formulas" in page.text(".headline")
+    assert "against the right formulas" in page.text("#recorded")
     page.element('input[name="backend"][value="webgl2"]').send_keys("\ue012")
     page.waited("#status", "WebGPU on")
-    headline, facts = page.text(".headline"), page.text("#recorded dl")
+    headline, facts = page.text("#recorded"), page.text("#facts")
     assert "\u00d7 the time of fakefur_shade on lavapipe, error at most" in headline
     for word in ("Error", "Domain", "exponent", "Time", "quartiles", "Driver", "Mesa", "Method", "thread"):
         assert word in facts
