@@ -21,10 +21,11 @@ from codegen.library import Library
 from conformance.check.accuracy import Accuracy
 from conformance.check.failure import FINITE, PERMITTED, WITHIN
 from conformance.check.interval import OUTSIDE
+from conformance.check.operations import promises
 from conformance.check.result import FunctionResult
 from conformance.drivers.known import excess
 from conformance.drivers.matrix import FORMAT
-from conformance.drivers.modes import Mode
+from conformance.drivers.modes import Mode, mode
 from conformance.sweep.source import code_of
 from targets import Device
 from targets.drivers import Driver
@@ -99,13 +100,17 @@ def accepted(f: Mapping[str, Any]) -> bool:
 
 @functools.cache
 def fingerprint(library: Library, name: str, target: str, mode: Mode) -> str:
-    """Hash of what a verdict depends on: the emitted code, bounds, accuracy table, number of inputs."""
+    """Hash of what a verdict depends on: emitted code, bounds, what the table promises, number of inputs."""
     table = load_table(mode.table or DEFAULT_TABLES[target])
+    bounds = library.bounds.get(name, ())
     parts = [
-        library.select([name]).source_hash,
+        repr(library.function(name).parameters),
         *code_of(kernel(library, name, target)),
-        repr(library.bounds.get(name)),
-        repr(table),
+        *(
+            repr((b.measure, b.bound, b.floor, b.field, sorted(b.where.items()), sorted(b.targets)))
+            for b in bounds
+        ),
+        *promises(library, name, table),
         repr(mode),
         str(FORMAT),
     ]
@@ -195,9 +200,9 @@ def hex_words(inputs: str) -> str:
 def as_text(data: dict[str, Any]) -> str:
     """JSON with one line per function, so that a changed result is a changed line."""
     modes = []
-    for name, mode in data["modes"].items():
-        head = {key: value for key, value in mode.items() if key != "functions"}
-        rows = [f"   {json.dumps(f)}: {json.dumps(v)}" for f, v in mode["functions"].items()]
+    for name, found in data["modes"].items():
+        head = {key: value for key, value in found.items() if key != "functions"}
+        rows = [f"   {json.dumps(f)}: {json.dumps(v)}" for f, v in found["functions"].items()]
         opening = json.dumps(head)[:-1]
         modes.append(f'  {json.dumps(name)}: {opening}, "functions": {{\n' + ",\n".join(rows) + "\n  }}")
     head = {key: value for key, value in data.items() if key != "modes"}
@@ -210,11 +215,15 @@ def read_all(folder: Path = FOLDER) -> dict[str, dict[str, Any]]:
 
 
 def stale(library: Library, recorded: dict[str, dict[str, Any]]) -> Iterable[tuple[str, str, list[str]]]:
-    """File, mode and functions that were recorded of other sources than the library's, or not at all."""
-    now = {name: library.select([name]).source_hash for name in library.public}
+    """File, mode and functions whose verdicts are of something else than what is there now, or missing."""
     for stem, data in recorded.items():
-        for mode, results in data["modes"].items():
-            then = {name: f["sources"] for name, f in results["functions"].items()}
-            old = [name for name, digest in now.items() if then.get(name) != digest]
+        target = data["device"]["target"]
+        for name, results in data["modes"].items():
+            how, then = mode(name), results["functions"]
+            old = [
+                f
+                for f in library.public
+                if then.get(f, {}).get("judged") != fingerprint(library, f, target, how)
+            ]
             if old:
-                yield stem, mode, old
+                yield stem, name, old

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from codegen.intervals import TABLES, Table, load_table, permitted
-from codegen.ir import nodes as ir
 from codegen.library import Library, load_library
 from conformance import cases
 from conformance.check.draws import Draw, length
+from conformance.check.operations import operations
 from conformance.check.sample import rows, together
 from conformance.executor import Job
 from conformance.soundness.enclosure import Array
@@ -34,14 +34,6 @@ MOST_HARD = 20_000
 """Points of one family at most: each stored point with each parameter that it fits comes first."""
 PRECISE = 2048
 """Lanes of a part that are undecided under some table and evaluated in 50 digits; others stay undecided."""
-LEANS_ON = {
-    "sqrt": ("inverse_sqrt", "/"),
-    "dot": ("*", "+"),
-    "cross": ("*", "-"),
-    "length": ("sqrt", "dot"),
-    "normalize": ("length", "inverse_sqrt", "dot", "*", "/"),
-}
-"""Operations in the formulas from which a table may inherit the promise of another."""
 INTERVALS = Path(__file__).parents[2] / "codegen/intervals"
 
 
@@ -87,20 +79,6 @@ class Swept:
     def entry(self) -> dict[str, Any]:
         """As data."""
         return {**asdict(self), "seconds": round(self.seconds, 1)}
-
-
-def operations(library: Library, name: str) -> frozenset[str]:
-    """Operations of the registry on whose promises the intervals of a function may depend."""
-    found: set[str] = set()
-    for function in library.select([name]).functions:
-        for e in ir.expressions(function.body):
-            if isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
-                found.add(e.op)
-            elif isinstance(e, ir.Convert):
-                found.add("cast")
-    while further := {used for op in found for used in LEANS_ON.get(op, ())} - found:
-        found |= further
-    return frozenset(found)
 
 
 def different(library: Library, name: str) -> dict[str, tuple[Table, list[str]]]:

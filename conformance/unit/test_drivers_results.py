@@ -142,7 +142,7 @@ def test_results_of_other_sources_are_stale(tmp_path: Path, monkeypatch: pytest.
     path = kept(tmp_path, "default", *(result(name, 1e-7) for name in load_library().public))
     assert list(stale(load_library(), read_all(tmp_path))) == []
     data = json.loads(path.read_text(encoding="utf-8"))
-    data["modes"]["default"]["functions"]["mirror"]["sources"] = "other"
+    data["modes"]["default"]["functions"]["mirror"]["judged"] = "other"
     assert list(stale(load_library(), {"pocl": data})) == [("pocl", "default", ["mirror"])]
 
 

@@ -24,6 +24,7 @@ from codegen.intervals import TABLES, Table, load_table, permitted
 from codegen.library import load_library
 from codegen.ops import BUILTINS
 from conformance import cases
+from conformance.check.operations import LEANS_ON
 from conformance.executor import Here, Job, Processes
 from conformance.soundness import record
 from conformance.soundness import sweep as sweeping
@@ -31,7 +32,7 @@ from conformance.soundness.__main__ import POINTS
 from conformance.soundness.enclosure import Enclosure
 from conformance.soundness.held import either_way, held, scalars
 from conformance.soundness.jobs import BATCHES, missing, sweep_missing
-from conformance.soundness.sweep import BATCH, LEANS_ON, different, sweep
+from conformance.soundness.sweep import BATCH, different, sweep
 from conformance.soundness.walk import enclosed, leaves
 from conformance.unit.support.sources import library_of
 from conformance.unit.support.tight import TOO_TIGHT, tightened
