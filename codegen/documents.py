@@ -20,7 +20,7 @@ def read_text(path: Path) -> str:
         if not path.exists():
             raise UserError(f"{path}: there is no such file")
         if not path.is_file():
-            raise UserError(f"{path}: is not a file")
+            raise UserError(f"{path}: cannot be read (it is no file)")
         if path.stat().st_size > LARGEST:
             raise UserError(f"{path}: is larger than {LARGEST >> 20} MiB")
         return path.read_text(encoding="utf-8")

@@ -6,9 +6,25 @@ import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+LONGEST = 1000
+"""Characters of a sentence: what it quotes of a file may be of any length."""
+
 
 class UserError(Exception):
-    """Bad input or usage; the command line prints the sentence and exits with status 2."""
+    """Bad input or usage; the command line prints the sentence and exits with status 2.
+
+    It quotes files that may hold anything: characters that are not printed are written as escapes.
+    """
+
+    def __init__(self, sentence: str) -> None:
+        super().__init__(_one_line(sentence))
+
+
+def _one_line(text: str) -> str:
+    shown = "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode() for c in text[: LONGEST + 1]
+    )
+    return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]} ..."
 
 
 @dataclass(frozen=True)
@@ -31,7 +47,7 @@ class SourceError(UserError):
         self.place = place
         self.sentence = sentence
         caret = f"\n    {place.text}\n    {' ' * (place.column - 1)}^" if place.text else ""
-        super().__init__(f"{place}: {sentence}{caret}")
+        Exception.__init__(self, f"{place}: {sentence}{caret}")
 
 
 def nearest(name: str, valid: Iterable[str]) -> str:

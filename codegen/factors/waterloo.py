@@ -19,6 +19,9 @@ from codegen.maps.image import png, read_pixels
 
 Array = npt.NDArray[np.float64]
 
+SHOWN = 40
+"""Characters of a file that a sentence quotes."""
+
 
 @dataclass(frozen=True)
 class Material:
@@ -67,12 +70,13 @@ def _listed(path: Path) -> Material:
 
 
 def _numbers(path: Path, words: list[str]) -> Array:
+    shown = repr(" ".join(words[:3])[:SHOWN])
     try:
         scale = np.array([float(word) for word in words[:3]])
     except ValueError:
-        raise UserError(f"{path.name}: the scale is three numbers, not {' '.join(words[:3])!r}") from None
+        raise UserError(f"{path.name}: the scale is three numbers, not {shown}") from None
     if len(scale) != 3 or not (np.isfinite(scale) & (scale > 0.0)).all():
-        raise UserError(f"{path.name}: the scale is three numbers above 0, not {' '.join(words[:3])!r}")
+        raise UserError(f"{path.name}: the scale is three numbers above 0, not {shown}")
     return scale
 
 

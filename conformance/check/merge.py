@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from codegen.documents import read_json
 from codegen.errors import UserError
 from conformance.check.result import FunctionResult
 from conformance.check.shard import Shard
@@ -60,14 +60,21 @@ def lacking(shards: set[Shard]) -> list[str]:
     ]
 
 
+def _is_result(data: Any) -> bool:
+    """Whether a value has what every result of a check has, as far as its own entries are not read."""
+    if not isinstance(data, dict) or not isinstance(data.get("results"), list):
+        return False
+    texts = [data.get("source", ""), data.get("shard") or "", *_listed(data.get("skipped", []))]
+    return all(isinstance(text, str) for text in texts)
+
+
+def _listed(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [None]
+
+
 def read(path: Path) -> dict[str, Any]:
     """The data of a result file; raises UserError for anything else."""
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as e:
-        raise UserError(f"{path}: {e.strerror}") from None
-    except ValueError:
-        raise UserError(f"{path} is not JSON") from None
-    if not isinstance(data, dict) or not isinstance(data.get("results"), list):
+    data: dict[str, Any] = read_json(path)
+    if not _is_result(data):
         raise UserError(f"{path} is no result of vair check --json")
     return data

@@ -6,12 +6,12 @@ Records hold the words of the inputs, so they outlive changes of the families th
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from codegen.documents import read_json
 from codegen.errors import UserError
 from codegen.ir.nodes import Function
 from codegen.library import Library
@@ -70,10 +70,7 @@ def lane_of(function: Function, identity: Identity, words: str = "") -> Draw:
 
 def records(path: Path) -> list[Mapping[str, Any]]:
     """The records in a file; raises UserError where there are none."""
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        raise UserError(f"{path} is not JSON") from None
+    data = read_json(path)
     if isinstance(data, dict) and "results" in data:
         try:
             data = [failure for result in data["results"] for failure in result["failures"]]
@@ -87,6 +84,8 @@ def records(path: Path) -> list[Mapping[str, Any]]:
 
 def from_record(library: Library, path: Path, record: Mapping[str, Any]) -> Case:
     """A record as a case; raises UserError where it does not fit the function any more."""
+    if not all(isinstance(record.get(key), str) for key in ("function", "identity", "words")):
+        raise UserError(f"{path}: a record does not fit: function, identity and words are texts")
     try:
         function = library.function(record["function"])
         identity = Identity.parse(record["identity"])

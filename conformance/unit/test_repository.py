@@ -139,11 +139,19 @@ def normal(name: str) -> str:
 def test_direct_dependencies_are_pinned_as_resolved() -> None:
     table = project()
     required = list(table["dependencies"])  # type: ignore[call-overload]  # a list of strings by specification
-    for extra in table["optional-dependencies"].values():  # type: ignore[attr-defined]  # a table of lists
-        required += extra
-    direct = dict(entry.split("==") for entry in required if not entry.startswith("vair["))
+    extras: dict[str, list[str]] = table["optional-dependencies"]  # type: ignore[assignment]
+    everything = extras["all"][0].removeprefix("vair[").removesuffix("]").split(",")
+    for name in everything:
+        required += extras[name]
+    direct = dict(entry.split("==") for entry in required)
     resolved = {normal(name): pin for name, pin in pins().items()}
     assert {normal(name): pin for name, pin in direct.items()}.items() <= resolved.items()
+
+
+def test_further_dependencies_are_pinned_exactly() -> None:
+    """Those of groups that ./dev does not install."""
+    extras: dict[str, list[str]] = project()["optional-dependencies"]  # type: ignore[assignment]
+    assert [e for name, group in extras.items() if name != "all" for e in group if "==" not in e] == []
 
 
 def test_this_environment_has_the_pinned_versions() -> None:

@@ -127,7 +127,8 @@ def test_killed_processes_leave_one_set(count: int, tmp_path: Path) -> None:
         with forked(work) as child:
             time.sleep(drawn.uniform(0.0, LONGEST))
             os.kill(child, signal.SIGKILL)
-            os.waitpid(child, 0)
+            status = os.waitpid(child, 0)[1]
+        assert os.waitstatus_to_exitcode(status) == -signal.SIGKILL
         assert content(folder) in whole
     install(folder, plans[0])
     assert content(tmp_path) == {f"v/{name}": text for name, text in whole[0].items()}

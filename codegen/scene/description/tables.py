@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-import math
-import tomllib
+import sys
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from codegen.documents import read_toml
 from codegen.errors import UserError, nearest
 
 
 def read_tables(path: Path, valid: Iterable[str]) -> dict[str, Table]:
     """The top-level tables of a file, by name; one that is absent is empty. `valid` are all the names."""
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise UserError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except UnicodeDecodeError:
-        raise UserError(f"{path}: is not a text file in UTF-8") from None
-    except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{path}: is not valid TOML: {error}") from None
+    content = read_toml(path)
     names = list(valid)
     for name, value in content.items():
         if name not in names:
@@ -148,8 +139,8 @@ class Table:
 
 
 def is_number(value: object) -> bool:
-    """Whether a TOML value is a finite number."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    """Whether a TOML value is a number that a float holds."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def show(value: object) -> str:
