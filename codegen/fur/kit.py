@@ -33,16 +33,18 @@ def kit_files(
     frame: Mapping[str, Any],
     matrices: Mapping[str, Any],
     scene: Mapping[str, Any],
+    dialects: Mapping[str, tuple[str, ...]] = DIALECTS,
 ) -> dict[str, bytes]:
     """The files by name.
 
     frame     values by member of the uniform block, without view_projection
     matrices  view_projection by graphics interface, "opengl" and "webgpu", column by column
     scene     what the scene is called, its camera, how many layers it has, whether it has fins
+    dialects  by target, those in which the stages are written
     """
     files = {}
-    for target, dialects in DIALECTS.items():
-        for dialect in dialects:
+    for target, chosen in dialects.items():
+        for dialect in chosen:
             for name, text in stage_texts(library, shading, target, dialect).items():
                 files[_file_name(name, dialect)] = text.encode("utf-8")
     arrays = {
@@ -60,7 +62,7 @@ def kit_files(
             "function": shading.function.name,
             "material": {s.path: s.name for s in shading.material},
         },
-        "passes": _passes(mesh, int(scene["layers"]), bool(scene["fins"])),
+        "passes": _passes(mesh, int(scene["layers"]), bool(scene["fins"]), dialects.get("glsl", ())),
         "buffers": {"file": BUFFERS, **_buffers(arrays)},
         "uniforms": _uniforms(block, frame),
         "view_projection": {name: _plain(matrix) for name, matrix in matrices.items()},
@@ -76,14 +78,13 @@ def _file_name(name: str, dialect: str) -> str:
     return name if dialect == extension else f"{stem}-{dialect}.{extension}"
 
 
-def _passes(mesh: FurMesh, layers: int, fins: bool) -> list[dict[str, Any]]:
+def _passes(mesh: FurMesh, layers: int, fins: bool, glsl: tuple[str, ...]) -> list[dict[str, Any]]:
     """The draw calls in order, with the states of the lecture."""
     states = pass_states(closed=mesh.findings["border edges"] == 0)
     instances = {"base": 1, "shell": layers - 1, "fin": int(fins and layers > 1)}
     files = {
         stage: {
-            dialect: [_file_name(f"{stage}.{kind}", dialect) for kind in ("vert", "frag")]
-            for dialect in DIALECTS["glsl"]
+            dialect: [_file_name(f"{stage}.{kind}", dialect) for kind in ("vert", "frag")] for dialect in glsl
         }
         for stage in STAGES
     }

@@ -85,7 +85,7 @@ class FurStudio:
         known = dict(zip(BODY, self.fur.surface, strict=True))
         return replace(self, library=library, shading=folded_into(folded, self.shading, painted, known))
 
-    def kit(self) -> dict[str, bytes]:
+    def kit(self, dialects: Mapping[str, tuple[str, ...]] = DIALECTS) -> dict[str, bytes]:
         """The files that an engine needs, see codegen.fur.kit."""
         matrices = {name: self.values(target)["view_projection"] for name, target in INTERFACES.items()}
         frame = {name: value for name, value in self.values("wgsl").items() if name != "view_projection"}
@@ -103,7 +103,8 @@ class FurStudio:
             "layers": self.fur.layers,
             "fins": self.fur.fins,
         }
-        return kit_files(self.library, self.shading, self.block, self.mesh, frame, matrices, scene)
+        mesh, shading = self.mesh, self.shading
+        return kit_files(self.library, shading, self.block, mesh, frame, matrices, scene, dialects)
 
     def draws(self, stages: Mapping[str, tuple[str, str]]) -> list[Draw]:
         """The draw calls: base, shells from the inner to the outer one, fins.

@@ -23,7 +23,8 @@ SERVED = (".html", ".css", ".js", ".vert", ".frag", ".wgsl")
 """Endings of the files of examples/web that belong to the page."""
 FORMAT = 1
 """Counts incompatible changes of web.json."""
-DIALECT = "es300"
+DIALECTS = {"glsl": ("es300",), "wgsl": ("wgsl",)}
+"""What a browser accepts."""
 
 
 def page_files(
@@ -77,15 +78,11 @@ def static_files() -> dict[str, bytes]:
 
 
 def shading_kit(studio: FurStudio, name: str) -> dict[str, bytes]:
-    """The kit of one variant as `vair fur` writes it, without stages of desktops, with one mesh for all."""
-    kit = shaded_by(studio, name).kit()
+    """The kit of one variant as `vair fur` writes it, in a browser's dialects, with one mesh for all kits."""
+    kit = shaded_by(studio, name).kit(DIALECTS)
     about = json.loads(kit["fur.json"])
-    needed = {BUFFERS}
-    for item in about["passes"]:
-        item["glsl"] = {DIALECT: item["glsl"][DIALECT]}
-        needed |= {*item["glsl"][DIALECT], item["wgsl"]["file"]}
     about["buffers"]["file"] = f"../../{BUFFERS}"
-    return {"fur.json": _json(about), **{file: kit[file] for file in sorted(needed)}}
+    return kit | {"fur.json": _json(about)}
 
 
 def plan(library: Library, offered: Choices) -> dict[str, Any]:

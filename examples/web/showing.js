@@ -47,7 +47,7 @@ export function showChoice(plan, shading, backend) {
 /** The result of a comparison, and whether there is something to compare. */
 export function showComparison(plan, shading, text) {
   at("compared").textContent = text;
-  at("compare").textContent = `Compare with ${plan.base} in this browser`;
+  at("compare").textContent = `Compare with ${plan.base} here`;
   at("compare").disabled = shading.name === plan.base;
 }
 

@@ -42,6 +42,21 @@ class Opened:
         address = "&".join(f"{key}={value}" for key, value in (PLAIN | choice).items())
         self.driver.get(f"{self.url}#{address}")
 
+    def steady(self) -> int:
+        """The page drawing with WebGL2 as at first, loaded afresh if need be; returns the frames drawn."""
+        usual = (
+            "return Boolean(window.page?.ready) && page.backend === 'webgl2'"
+            " && document.getElementById('message').hidden"
+        )
+        if not self.run(usual):
+            self.load(backend="webgl2")
+            return self.settle()
+        self.driver.execute_async_script(
+            "page.turning.set({ yaw: 0, pitch: 0, distance: 1 }); page.controls.reset();"
+            "page.useShading(page.plan.shadings[0]).then(arguments[0])"
+        )
+        return self.settle()
+
     def forget_scripts(self) -> None:
         """Scripts that ran before the page run no more."""
         for identifier in self.scripts:

@@ -37,8 +37,10 @@ KIT = "shadings/fakefur_shade"
 @pytest.mark.parametrize("backend", ["webgl2", pytest.param("webgpu", marks=pytest.mark.nightly)])
 def test_a_lost_context_is_set_up_again(loud_page: Opened, backend: str) -> None:
     page = loud_page
-    page.load(backend=backend)
-    frames = page.settle()
+    frames = page.steady()
+    if backend == "webgpu":
+        page.load(backend=backend)
+        frames = page.settle()
     before = page.pixels()
     page.run(LOSE[backend])
     assert "is being set up again" in page.waited("#message", "took")
@@ -48,8 +50,7 @@ def test_a_lost_context_is_set_up_again(loud_page: Opened, backend: str) -> None
 
 
 def test_a_reader_is_told_when_nothing_helps(page: Opened) -> None:
-    page.load(backend="webgl2")
-    page.settle()
+    page.steady()
     told = page.run(
         "const losses = new page.losses.constructor(); const times = [0, 1, 2, 3, 4, 5, 6, 40000];"
         "const lost = ['webgl2', 'webgl2', 'webgl2', 'webgpu', 'webgpu', 'webgpu', 'webgl2', 'webgpu'];"
