@@ -56,13 +56,14 @@ def load_mesh(path: Path) -> trimesh.Trimesh:
     """The triangles of a mesh file, as they are there; raises UserError for a file that holds none."""
     mesh_package: Any = require_trimesh()
     if not path.is_file():
-        raise UserError(f"{path}: there is no such mesh file")
+        what = "is a folder, not a mesh file" if path.is_dir() else "there is no such mesh file"
+        raise UserError(f"{path}: {what}")
     if path.stat().st_size > LARGEST_FILE:
         raise UserError(f"{path}: is larger than {LARGEST_FILE >> 20} MiB; simplify the mesh first")
     try:
         loaded = mesh_package.load_mesh(str(path), process=False)
     except Exception as error:  # trimesh raises whatever its many format readers raise
-        raise UserError(f"{path}: cannot be read as a mesh ({_first_line(error)})") from error
+        raise UserError(f"{path}: cannot be read as a mesh ({_reason(error)})") from error
     if not isinstance(loaded, mesh_package.Trimesh) or len(loaded.faces) == 0:
         raise UserError(f"{path}: holds no triangles")
     if not np.isfinite(loaded.vertices).all():
@@ -206,6 +207,18 @@ def _unit(a: Doubles) -> Doubles:
     return unit
 
 
-def _first_line(error: Exception) -> str:
-    text = str(error).strip()
-    return text.splitlines()[0] if text else type(error).__name__
+def _reason(error: Exception) -> str:
+    """What a reader of some format means, as the end of a sentence."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    match error:
+        case KeyError():
+            return f'it lacks "{error.args[0]}"'
+        case FileNotFoundError():
+            return f"it refers to a file that is not there, {error.filename or lines[0]}"
+        case OSError():
+            return error.strerror or type(error).__name__
+        case NotImplementedError():
+            return "its name ends in no known format of meshes"
+        case ImportError():  # of a package that guesses encodings
+            return "its text is in no known encoding"
+    return lines[0].rstrip(".") if lines else "its parts contradict each other"

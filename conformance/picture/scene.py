@@ -23,6 +23,8 @@ from conformance.picture.visibility import Camera
 
 MOST_LIGHTS = 64
 """Lights of one kind."""
+BRIGHTEST = 1.0e4
+"""Largest component of a light's colour, as shading functions take it."""
 TABLES = ("scene", "shade", "parameters", "view", "lights", "render", "fur", "strands")
 
 Triple = tuple[float, float, float]
@@ -206,12 +208,20 @@ def _picture(render: Table, sky: Sky | None, hair: Hair | None) -> Picture:
             frequency=brush.number("frequency", 0.0, 1e4, 10.0),
             length=brush.number("length", 1.0, 1e4, 40.0),
         ),
-        lights=tuple(Light(t.direction("direction"), t.triple("colour", (1.0, 1.0, 1.0))) for t in lights),
+        lights=tuple(Light(t.direction("direction"), _colour(t)) for t in lights),
         sky=sky,
     )
     for table in (render, camera, brush, background, *lights):
         table.close()
     return picture
+
+
+def _colour(light: Table) -> Triple:
+    colour = light.triple("colour", (1.0, 1.0, 1.0))
+    if not all(0.0 <= x <= BRIGHTEST for x in colour):
+        said = f"must be three numbers from 0 to {BRIGHTEST:g}, not {show(list(colour))}"
+        raise light.error("colour", said)
+    return colour
 
 
 def _size(render: Table) -> tuple[int, int]:
