@@ -42,6 +42,10 @@ class Scene(Protocol):
         """
         ...
 
+    def render(self, uniforms: bytes) -> None:
+        """Draw the same and wait until it is drawn, without reading the picture."""
+        ...
+
     def release(self) -> None:
         """Give the device's memory back."""
         ...

@@ -1,17 +1,20 @@
-"""The plate that shows what each piece of fur buys: `python -m conformance.picture.fur_plate -o FILE.png`.
+"""The plate that shows what each piece of fur buys: `python -m conformance.picture.fur_plate`.
 
-Panels and their changes to the scene are data, in fur_plate.toml. The time beside a caption is the processor
-time of one frame, drawn in turns with the other panels; on a software driver it is what the frame costs.
+Panels and their changes to the scene are data, in fur_plate.toml. The time beside a caption is that of one
+frame, drawn in turns with the other panels; on a software driver, the processor time of the process with the
+driver on one thread. --record keeps the times as fur_plate.json, from which the table of README.md is made.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -19,14 +22,22 @@ import numpy as np
 
 from codegen.backends import open_runtime
 from codegen.errors import UserError
+from codegen.files import write_text
 from codegen.fur.shading import fur_shading
 from codegen.library import Library, load_library
+from conformance.bench.clocks import Clock
+from conformance.bench.fur.page import RECORDED_PLATE as RECORDED
+from conformance.bench.fur.page import update_readme
+from conformance.bench.fur.rounds import THREADS, frame_clock
+from conformance.bench.record import as_json, described_device, machine_data, rounded
 from conformance.picture.fur_render import FurStudio, develop, lit_shading, open_drawing, set_up_fur
 from conformance.picture.image import contact_sheet, write_png
 from conformance.picture.tone import eight_bit
 from targets.raster import Picture
 
-SCENES = Path(__file__).resolve().parents[2] / "examples" / "scenes"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SCENES = EXAMPLES / "scenes"
+PLATE = EXAMPLES / "pictures" / "fur-pieces.png"
 COLUMNS = 4
 
 
@@ -65,8 +76,10 @@ def panels(library: Library, plan: Mapping[str, Any], **changes: Any) -> list[Pa
     return made
 
 
-def draw_in_turns(made: list[Panel], target: str, rounds: int) -> tuple[list[Picture], list[float]]:
-    """The samples of every panel, and the median processor time of one frame in seconds."""
+def draw_in_turns(
+    made: list[Panel], target: str, rounds: int, clock: Clock = time.process_time
+) -> tuple[list[Picture], list[float]]:
+    """The samples of every panel, and the median time of one frame in seconds."""
     drawings = [open_drawing(panel.studio, target) for panel in made]
     blocks = [panel.studio.block.pack(panel.studio.values(target)) for panel in made]
     pictures = [drawing.draw(block) for drawing, block in zip(drawings, blocks, strict=True)]
@@ -74,39 +87,63 @@ def draw_in_turns(made: list[Panel], target: str, rounds: int) -> tuple[list[Pic
     for turn in range(rounds):
         order = range(len(made)) if turn % 2 == 0 else reversed(range(len(made)))
         for k in order:
-            start = time.process_time()
-            drawings[k].draw(blocks[k])
-            seconds[turn, k] = time.process_time() - start
+            start = clock()
+            drawings[k].render(blocks[k])
+            seconds[turn, k] = clock() - start
     for drawing in drawings:
         drawing.release()
     return pictures, np.median(seconds, axis=0).tolist()
 
 
-def write_plate(path: Path, target: str) -> None:
-    """Draw the plate and write it as PNG."""
+def draw_plate(path: Path, target: str) -> dict[str, Any]:
+    """Draw the plate, write it as PNG, and return what was measured."""
     plan = read_plan()
+    device = open_runtime(target).device
+    clock, clock_name = frame_clock(device)
     made = panels(load_library(), plan)
-    pictures, seconds = draw_in_turns(made, target, plan["rounds"])
+    pictures, seconds = draw_in_turns(made, target, plan["rounds"], clock)
     shown = [
         (f"{panel.caption}  ({1000.0 * cost:.0f} ms)", eight_bit(develop(panel.studio.picture, picture)))
         for panel, picture, cost in zip(made, pictures, seconds, strict=True)
     ]
     write_png(path, contact_sheet(shown, COLUMNS))
-    device = open_runtime(target).device
-    print(f"{path}: processor time of a frame on {device.driver}, {device.device}, {plan['rounds']} rounds")
+    width, height = made[0].studio.drawn_size
+    data: dict[str, Any] = rounded(
+        {
+            "date": datetime.now(UTC).date().isoformat(),
+            "device": described_device(device),
+            "machine": machine_data(),
+            "method": {
+                "clock": clock_name,
+                "rounds": plan["rounds"],
+                "picture": f"{width} x {height} samples",
+            },
+            "panels": [
+                {"caption": panel.caption, "ms": 1000.0 * cost}
+                for panel, cost in zip(made, seconds, strict=True)
+            ],
+        }
+    )
+    return data
 
 
 def main() -> int:
     """Run; returns the exit status."""
     parser = argparse.ArgumentParser(description="Draw the plate that shows what each piece of fur buys.")
-    parser.add_argument("-o", "--output", type=Path, required=True, help="the PNG file to write")
+    parser.add_argument("-o", "--output", type=Path, default=PLATE, help="the PNG file to write")
     parser.add_argument("--target", default="glsl", help="glsl or wgsl")
+    parser.add_argument("--record", action="store_true", help="keep the times, as data and in README.md")
     options = parser.parse_args()
+    os.environ.update(THREADS)
     try:
-        write_plate(options.output, options.target)
+        data = draw_plate(options.output, options.target)
     except UserError as error:
         print(f"fur_plate: {error}", file=sys.stderr)
         return 2
+    if options.record:
+        write_text(RECORDED, as_json(data))
+        update_readme()
+    print(f"{options.output}: {data['device']['short']}, {data['method']['clock']}")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Draws triangles with OpenGL into a picture of half floats."""
+"""Draws triangles with OpenGL into a picture of floats."""
 
 from __future__ import annotations
 
@@ -28,11 +28,17 @@ when it is deleted."""
 class GlslScene:
     """Draw calls in the context of a runtime; see targets.raster.Scene."""
 
-    def __init__(self, runtime: GlslRuntime, draws: Sequence[Draw], size: tuple[int, int]) -> None:
-        """Build the programs and upload the vertices; raises BuildFailed with the compiler's log."""
+    def __init__(
+        self, runtime: GlslRuntime, draws: Sequence[Draw], size: tuple[int, int], bits: int = 16
+    ) -> None:
+        """Build the programs and upload the vertices; raises BuildFailed with the compiler's log.
+
+        bits  of the picture's floats: 16 or 32
+        """
         self._runtime = runtime
         self._draws = draws
         self._size = size
+        self._type = {16: "f2", 32: "f4"}[bits]
         self._held: list[Any] = []
         runtime.on_thread(self._build)
 
@@ -40,8 +46,12 @@ class GlslScene:
         """The picture; see targets.raster.Scene."""
         data = self._runtime.on_thread(self._draw, uniforms)
         width, height = self._size
-        picture = np.frombuffer(data, np.float16).reshape(height, width, 4).astype(np.float32)
+        picture = np.frombuffer(data, self._type).reshape(height, width, 4).astype(np.float32)
         return np.ascontiguousarray(picture[::-1])
+
+    def render(self, uniforms: bytes) -> None:
+        """Draw and wait; see targets.raster.Scene."""
+        self._runtime.on_thread(self._draw, uniforms, False)
 
     def release(self) -> None:
         """Give the device's memory back."""
@@ -56,7 +66,7 @@ class GlslScene:
         if self._runtime not in _idle_frames:
             _idle_frames[self._runtime] = context.simple_framebuffer((1, 1))
         self._idle = _idle_frames[self._runtime]
-        self._colour = self._hold(context.texture(self._size, 4, dtype="f2"))
+        self._colour = self._hold(context.texture(self._size, 4, dtype=self._type))
         depth = self._hold(context.depth_renderbuffer(self._size))
         self._frame = self._hold(context.framebuffer([self._colour], depth))
         self._arrays = [self._array(draw) for draw in self._draws]
@@ -80,7 +90,7 @@ class GlslScene:
         names = [name for name, _, used in inside if used]
         return self._hold(self._context.vertex_array(program, [(vertices, form, *names)], indices))
 
-    def _draw(self, uniforms: bytes) -> bytes:
+    def _draw(self, uniforms: bytes, read: bool = True) -> bytes:
         context = self._context
         block = context.buffer(uniforms)
         block.bind_to_uniform_block(BLOCK)
@@ -92,7 +102,8 @@ class GlslScene:
             array.render(context.TRIANGLES, instances=draw.instances)
         context.enable_only(context.NOTHING)
         self._frame.depth_mask = True
-        data: bytes = self._colour.read()
+        data: bytes = self._colour.read() if read else b""
+        context.finish()
         self._idle.use()
         block.release()
         self._runtime.raise_error()

@@ -1,4 +1,4 @@
-"""Draws triangles with WebGPU into a picture of half floats."""
+"""Draws triangles with WebGPU into a picture of floats."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ from targets.protocol import BuildFailed
 from targets.raster import Draw, Picture, attributes
 from targets.wgsl.runtime import WgslRuntime
 
-COLOUR, DEPTH = "rgba16float", "depth32float"
-TEXEL_BYTES = 8
+COLOURS, DEPTH = {16: "rgba16float", 32: "rgba32float"}, "depth32float"
 ROW_ALIGNMENT = 256
 """Rows of a texture that is read start at multiples of this."""
 
@@ -21,14 +20,17 @@ class WgslScene:
     """Draw calls on the device of a runtime; see targets.raster.Scene. All draws share one module."""
 
     def __init__(
-        self, runtime: WgslRuntime, module: str, draws: Sequence[Draw], size: tuple[int, int]
+        self, runtime: WgslRuntime, module: str, draws: Sequence[Draw], size: tuple[int, int], bits: int = 16
     ) -> None:
-        """Build the pipelines and upload the vertices; raises BuildFailed with naga's report."""
-        self._runtime, self._draws, self._size = runtime, draws, size
+        """Build the pipelines and upload the vertices; raises BuildFailed with naga's report.
+
+        bits  of the picture's floats: 16 or 32, into which WebGPU does not blend
+        """
+        self._runtime, self._draws, self._size, self._bits = runtime, draws, size, bits
         self._wgpu, self._gpu = runtime._wgpu, runtime._device
         self._module = runtime.create_module(module)
         usage = self._wgpu.TextureUsage
-        self._colour = self._texture(COLOUR, usage.RENDER_ATTACHMENT | usage.COPY_SRC)
+        self._colour = self._texture(COLOURS[bits], usage.RENDER_ATTACHMENT | usage.COPY_SRC)
         self._depth = self._texture(DEPTH, usage.RENDER_ATTACHMENT)
         stages = self._wgpu.ShaderStage.VERTEX | self._wgpu.ShaderStage.FRAGMENT
         self._layout = self._gpu.create_bind_group_layout(
@@ -39,6 +41,9 @@ class WgslScene:
 
     def draw(self, uniforms: bytes) -> Picture:
         """The picture; see targets.raster.Scene."""
+        return self._draw(uniforms)
+
+    def _draw(self, uniforms: bytes, read: bool = True) -> Picture:
         block = self._gpu.create_buffer_with_data(data=uniforms, usage=self._wgpu.BufferUsage.UNIFORM)
         group = self._gpu.create_bind_group(
             layout=self._layout,
@@ -71,9 +76,13 @@ class WgslScene:
             render.draw_indexed(draw.triangles.size, draw.instances)
         render.end()
         self._gpu.queue.submit([encoder.finish()])
-        picture = self._read()
+        picture = self._read(self._size if read else (1, 1))
         block.destroy()
         return picture
+
+    def render(self, uniforms: bytes) -> None:
+        """Draw and wait, by reading one texel; see targets.raster.Scene."""
+        self._draw(uniforms, False)
 
     def release(self) -> None:
         """Give the device's memory back."""
@@ -88,7 +97,7 @@ class WgslScene:
 
     def _pipeline(self, draw: Draw) -> Any:
         state = draw.state
-        target: dict[str, Any] = {"format": COLOUR}
+        target: dict[str, Any] = {"format": COLOURS[self._bits]}
         if state["blend"]:
             target["blend"] = {
                 name: {
@@ -133,13 +142,14 @@ class WgslScene:
         make = self._gpu.create_buffer_with_data
         return make(data=vertices, usage=usage.VERTEX), make(data=indices, usage=usage.INDEX)
 
-    def _read(self) -> Picture:
-        width, height = self._size
-        row = -(-width * TEXEL_BYTES // ROW_ALIGNMENT) * ROW_ALIGNMENT
+    def _read(self, size: tuple[int, int]) -> Picture:
+        width, height = size
+        texel = 4 * self._bits // 8
+        row = -(-width * texel // ROW_ALIGNMENT) * ROW_ALIGNMENT
         data = self._gpu.queue.read_texture(
             {"texture": self._colour, "mip_level": 0, "origin": (0, 0, 0)},
             {"offset": 0, "bytes_per_row": row, "rows_per_image": height},
             (width, height, 1),
         )
-        texels = np.frombuffer(data, np.float16).reshape(height, row // 2)[:, : 4 * width]
-        return texels.reshape(height, width, 4).astype(np.float32)
+        floats = np.frombuffer(data, f"f{self._bits // 8}").reshape(height, -1)[:, : 4 * width]
+        return floats.reshape(height, width, 4).astype(np.float32)
