@@ -32,6 +32,7 @@ COMMANDS = {
     "verify": "codegen.commands.verify:command",
     "render": "conformance.commands.render:command",
     "fur": "conformance.commands.fur:command",
+    "docs": "conformance.commands.docs:command",
     "report": "conformance.commands.report:command",
     "demo": "conformance.commands.demo:command",
 }

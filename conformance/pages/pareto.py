@@ -1,0 +1,75 @@
+"""Speed against error of a function and its variants on one driver, as SVG in the page's own colours."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import matplotlib
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+INCHES = (4.2, 3.0)
+COLOURS = {
+    "#111111": "var(--ink)",
+    "#222222": "var(--soft)",
+    "#333333": "var(--line)",
+    "#444444": "var(--variant)",
+    "#555555": "var(--front)",
+}
+"""Stand-ins that matplotlib draws with -> what the style sheet says, in light and in dark."""
+INK, SOFT, LINE, VARIANT, FRONT = COLOURS
+LEAST = 1e-9
+"""Error at which results without any error are drawn."""
+
+
+def _power(value: float, _: object) -> str:
+    """1e-6, 1, 1e4."""
+    exponent = round(math.log10(value))
+    return f"1e{exponent}" if exponent else "1"
+
+
+def picture(points: Sequence[dict[str, Any]], base: str, current: str, title: str) -> str:
+    """An svg element: time across, error up; the function of the page is the filled mark.
+
+    points  as conformance.pages.recorded.group_points gives them
+    """
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "vair", "font.family": "sans-serif"}):
+        figure = Figure(figsize=INCHES, layout="constrained")
+        axes = figure.subplots()
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        best = sorted((p["ns"], max(p["error"], LEAST)) for p in points if p["front"])
+        axes.step([x for x, _ in best], [y for _, y in best], where="post", color=FRONT, linewidth=1.4)
+        for p in points:
+            colour = INK if p["name"] == base else VARIANT
+            face = colour if p["name"] == current else "none"
+            x, y = p["ns"], max(p["error"], LEAST)
+            axes.plot([x], [y], "o", markersize=6, markeredgecolor=colour, markerfacecolor=face)
+            label = p["name"].removeprefix(base).strip("_") or "default"
+            axes.annotate(label, (x, y), xytext=(6, 4), textcoords="offset points", fontsize=8, color=SOFT)
+        axes.margins(0.22)
+        for side in ("top", "right"):
+            axes.spines[side].set_visible(False)
+        for side in ("left", "bottom"):
+            axes.spines[side].set_color(LINE)
+        axes.grid(True, which="major", color=LINE, linewidth=0.6)
+        axes.set_axisbelow(True)
+        axes.tick_params(colors=SOFT, labelsize=8, which="both", length=0)
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
+        axes.yaxis.set_major_formatter(FuncFormatter(_power))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.set_xlabel("ns per evaluation", color=SOFT, fontsize=8.5)
+        axes.set_ylabel(f"largest {points[0]['measure']} error", color=SOFT, fontsize=8.5)
+        axes.set_title(title, loc="left", fontsize=9.5, color=INK)
+        stream = io.StringIO()
+        figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    text = stream.getvalue()
+    text = re.sub(r"<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
+    for drawn, styled in COLOURS.items():
+        text = text.replace(drawn, styled)
+    return text

@@ -1,0 +1,88 @@
+"""All files of the documentation: an index, a page per function, the guides, the lecture's errata."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from codegen.library import Library
+from codegen.version import VERSION
+from conformance.pages import function
+from conformance.pages.text import code_style, rendered, title_of
+
+GUIDES = ("vendor", "generate", "conformance", "adding", "ci")
+"""The guides, in the order of the index."""
+ERRATA = Path(__file__).parents[1] / "printed"
+NOTES = {
+    "vendor": "for an engine: files, no toolchain, later upgrades",
+    "generate": "choose functions or describe a scene",
+    "conformance": "check drivers and other people's backends",
+    "adding": "a function, a variant, a built-in, a target",
+    "ci": "in your own continuous integration, with and without a GPU",
+}
+
+
+def site(library: Library, names: Sequence[str]) -> Iterator[tuple[str, bytes]]:
+    """Path inside the folder and content of every file.
+
+    names  functions that get a page; others are named without a link
+    """
+    style = _text("conformance.report", "page/report.css") + _text(__package__, "templates/pages.css")
+    yield "style.css", (style + code_style()).encode()
+    guides = [(name, title_of(guide(name)), NOTES[name]) for name in GUIDES]
+    sections: dict[str, list[Any]] = {}
+    for name in names:
+        f = library.function(name)
+        sections.setdefault(f.module, []).append(f)
+    shared = {"version": VERSION, "source": library.select().source_hash, "guides": guides}
+    yield "index.html", _page("index.html.j2", shared, root="", sections=sections, total=len(names))
+    known = set(names)
+
+    def address(name: str) -> str | None:
+        return f"{name}.html" if name in known else None
+
+    for name in names:
+        shown = function.view(library, library.function(name), address)
+        yield f"functions/{name}.html", _page("function.html.j2", shared, root="../", f=shown, known=known)
+    for name in GUIDES:
+        html = rendered(guide(name), lambda file: f"{file[:-3]}.html" if file[:-3] in GUIDES else None)
+        title = title_of(guide(name))
+        yield f"guides/{name}.html", _page("guide.html.j2", shared, root="../", title=title, html=html)
+    markdown = (ERRATA / "README.md").read_text(encoding="utf-8")
+    markdown = markdown[markdown.index("# ") :]
+    html = rendered(markdown, lambda file: None)
+    yield "errata.html", _page("guide.html.j2", shared, root="", title=title_of(markdown), html=html)
+    for picture in sorted((ERRATA / "pictures").glob("*.png")):
+        yield f"pictures/{picture.name}", picture.read_bytes()
+
+
+def guide(name: str) -> str:
+    """A guide's Markdown."""
+    return _text("codegen", f"guides/{name}.md")
+
+
+def _page(template: str, shared: dict[str, Any], **shown: Any) -> bytes:
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("conformance.pages", "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["figure"] = figure
+    return environment.get_template(template).render(**shared, **shown).encode()
+
+
+def figure(value: Any) -> str:
+    """A number for people; infinite ones are words already."""
+    if isinstance(value, str):
+        return value
+    return "0" if value == 0 else f"{value:.3g}"
+
+
+def _text(package: str, path: str) -> str:
+    return files(package).joinpath(path).read_text(encoding="utf-8")
