@@ -41,9 +41,7 @@ NOTHING_NOTICED = (int(pytest.ExitCode.OK), int(pytest.ExitCode.NO_TESTS_COLLECT
 
 
 COMPILED = "codegen/intervals/"
-"""Where loops are compiled, and constants of theirs defined."""
-LOOPS = ("codegen/intervals/kernels.py", "codegen/intervals/lanes.py")
-"""What is compiled. numba keeps it by file and time, and would take a mutant for the original."""
+"""Where constants of compiled loops are defined."""
 
 
 def warm_up(tests: Sequence[str]) -> int:
@@ -92,15 +90,10 @@ def forget(names: set[str]) -> None:
             delattr(sys.modules[package], last)  # "from package import name" looks there first
 
 
-def forget_compiled(everything: bool) -> None:
-    """Keep nothing that is compiled from now on in this process; nor use what was kept, if `everything`."""
-    try:
-        kept = importlib.import_module("numba.core.caching").IndexDataCacheFile
-    except ImportError:
-        return  # no loops
-    kept.save = lambda *_: None
-    if everything:
-        kept.load = lambda *_: None
+def keep_nothing_compiled() -> None:
+    """Loops that are compiled from now on are not kept on disk: numba would take them for the original's."""
+    with contextlib.suppress(ImportError):
+        importlib.import_module("numba.core.caching").IndexDataCacheFile.save = lambda *_: None
 
 
 class _Loader(importlib.machinery.SourceFileLoader):
@@ -180,7 +173,7 @@ class Session:
         forget(set(self.stale))
         change.put()
         if change.tree is not None and change.path.startswith(COMPILED):
-            forget_compiled(change.path in LOOPS)
+            keep_nothing_compiled()
         plugins: list[Any] = [Selection(self.chosen, self.excluded, self.without)]
         watch = Watch(ROOT, self.watched)
         if self.notes is not None:
