@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -15,7 +16,7 @@ from codegen.ir.types import Array, Struct
 from codegen.library import Library
 from codegen.passes.analysis.operations import operations_by_cost
 from conformance.pages import recorded
-from conformance.pages.pareto import picture
+from conformance.pages.pareto import mark, picture
 from conformance.pages.text import anchor, coloured, linked
 from conformance.printed.catalogue import MISPRINTS
 
@@ -48,15 +49,19 @@ def view(library: Library, f: Function, address: Callable[[str], str | None]) ->
         "half": half_text(form) if form else "",
         "operations": operations_by_cost(f, library),
         "times": recorded.times(library, f),
-        "pictures": [
-            picture(points, base, f.name, driver)
-            for driver, points in recorded.group_points(library, base).items()
-        ],
+        "mark": mark(f.name),
+        "pictures": pictures(library, base),
         "variants": [v.name for v in library.variants(base) if v.name != f.name],
         "calls": callees(f),
         "errata": errata(library, f),
         "texts": texts(library, f, address),
     }
+
+
+@functools.cache
+def pictures(library: Library, base: str) -> list[str]:
+    """Time against error of a group, one picture per driver; the same on the pages of all its members."""
+    return [picture(points, base, driver) for driver, points in recorded.group_points(library, base).items()]
 
 
 def errata(library: Library, f: Function) -> list[dict[str, str]]:

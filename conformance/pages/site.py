@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
 from pathlib import Path
@@ -66,6 +67,11 @@ def guide(name: str) -> str:
 
 
 def _page(template: str, shared: dict[str, Any], **shown: Any) -> bytes:
+    return _environment().get_template(template).render(**shared, **shown).encode()
+
+
+@functools.cache
+def _environment() -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("conformance.pages", "templates"),
         autoescape=True,
@@ -74,7 +80,7 @@ def _page(template: str, shared: dict[str, Any], **shown: Any) -> bytes:
         lstrip_blocks=True,
     )
     environment.filters["figure"] = figure
-    return environment.get_template(template).render(**shared, **shown).encode()
+    return environment
 
 
 def figure(value: Any) -> str:
