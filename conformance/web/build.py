@@ -7,9 +7,11 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from codegen.errors import UserError
 from codegen.fur.kit import BUFFERS
-from codegen.fur.shading import fur_shading
+from codegen.fur.shading import fur_shading, member_name
 from codegen.library import Library, default_root
 from codegen.version import VERSION
 from conformance.picture.fur_render import FurStudio, set_up_fur
@@ -40,7 +42,7 @@ def page_files(
     offered = offered or choices()
     files = static_files()
     studio = set_up_fur(library, scene or SCENE, pictured=False)
-    check_scene(studio, scene or SCENE, offered.base)
+    check_scene(studio, scene or SCENE, offered)
     for shading in offered.shadings:
         kit = shading_kit(studio, shading.name)
         files[BUFFERS] = kit.pop(BUFFERS)
@@ -49,19 +51,23 @@ def page_files(
     return files
 
 
-def check_scene(studio: FurStudio, scene: Path, base: str) -> None:
+def check_scene(studio: FurStudio, scene: Path, offered: Choices) -> None:
     """Raises UserError for a scene that the page would show wrongly."""
-    needed = {slot.path for slot in fur_shading(studio.library, base).material}
+    needed = {slot.path for slot in fur_shading(studio.library, offered.base).material}
     if {slot.path for slot in studio.shading.material} != needed:
-        raise UserError(
-            f"{scene}: is shaded by {studio.shading.function.name}; the page has controls for {base}"
-        )
-    if studio.fur.layers < 2:
-        raise UserError(f"{scene}: [fur] layers must be 2 at least, so that the page has shells to draw")
+        shaded = studio.shading.function.name
+        raise UserError(f"{scene}: is shaded by {shaded}; the page has controls for {offered.base}")
     if studio.picture.shadows:
         raise UserError(
             f"{scene}: the page turns the body under its lights, so [render] shadows must be false"
         )
+    values = studio.values("wgsl")
+    for parameter in offered.parameters:
+        for path in parameter.sets:
+            value = np.asarray(values.get(path, values.get(member_name(path))))
+            if not np.all((parameter.least <= value) & (value <= parameter.most)):
+                span = f"{parameter.least:g} to {parameter.most:g}"
+                raise UserError(f"{scene}: {path} is {value.flat[0]:g}; the page has a control for {span}")
 
 
 def shaded_by(studio: FurStudio, name: str) -> FurStudio:

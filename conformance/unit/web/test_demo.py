@@ -21,6 +21,7 @@ from dataclasses import replace
 from http.server import ThreadingHTTPServer
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from codegen.cli import run
@@ -149,18 +150,25 @@ def test_bad_use_is_one_sentence(
     assert said.count("\n") == 1
 
 
-@pytest.mark.parametrize("what", ["shading", "layers", "shadows"])
+@pytest.mark.parametrize("what", ["shading", "layers", "exponent", "shadows"])
 def test_a_scene_that_the_page_would_show_wrongly_is_refused(studio: FurStudio, what: str) -> None:
     wrong, sentence = {
         "shading": (
             replace(studio, shading=fur_shading(studio.library, "shell_shade")),
             "is shaded by shell_shade",
         ),
-        "layers": (replace(studio, fur=replace(studio.fur, layers=1)), "layers must be 2 at least"),
+        "layers": (
+            replace(studio, fur=replace(studio.fur, layers=1)),
+            "layers is 1; the page has a control for 2 to 64",
+        ),
+        "exponent": (
+            replace(studio, material={**studio.material, "optics.exponent": np.array([8.0])}),
+            r"optics\.exponent is 8; the page has a control for 16 to 100",
+        ),
         "shadows": (replace(studio, picture=replace(studio.picture, shadows=True)), "shadows must be false"),
     }[what]
     with pytest.raises(UserError, match=sentence):
-        check_scene(wrong, Path("scene.toml"), choices().base)
+        check_scene(wrong, Path("scene.toml"), choices())
 
 
 @pytest.mark.nightly
