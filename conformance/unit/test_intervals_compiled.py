@@ -31,7 +31,7 @@ PROGRAM = """def probe(a: X, b: X, c: X) -> vec4:
     power = exp(product * 0.1) * log(square) + exp2(a) - log2(square)
     turned = product if sum > 0.5 else square
     wide = vec3(sum, turned, c)
-    more = quotient + dot(wide, vec3(a, b, c))
+    more = quotient + dot(wide, vec3(a, b, c)) - dot(vec3(a, 0.5, c), vec3(b, 0.25, 1.0))
     return vec4(more, root * length(wide), power + sin(turned), normalize(wide).y)
 """
 FUNCTIONS = ("sin_angle", "fakefur_shade_printed", "ggx_sample", "hammersley", "safe_pow")

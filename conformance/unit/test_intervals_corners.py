@@ -1,0 +1,126 @@
+"""Corners of interval evaluation that random boxes seldom meet.
+
+Plan. Hand-made values, and functions of one line.
+  crossed ends   of a clamp: targets differ, so that both ways count
+  cut            of atan2: on the negative x-axis either sign of pi
+  zero           a dividend that is 0 although the promise begins above 0
+  known lanes    of an integer that is an interval elsewhere stay exact
+  bits of zero   either word, and every word where something else than a number may be
+  anything       has infinite ends, also through absolute values and normalised vectors
+  many ways      a lane with more ways than are followed keeps the hull
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from codegen.intervals import DEFAULT_TABLES, TABLES, arithmetic, elementary, load_table, permitted, whole
+from codegen.intervals.causes import CauseBook
+from codegen.intervals.context import Context
+from codegen.intervals.values import Range, Whole
+from conformance.unit.support.sources import library_of
+from targets import TARGETS
+
+INF = np.inf
+EVERY_WORD = 2**32 - 1
+
+
+def ends(*pairs: tuple[float, float]) -> tuple[Any, Any]:
+    low, high = zip(*pairs, strict=True)
+    return np.array(low, np.float64), np.array(high, np.float64)
+
+
+def pairs(found: Range | Whole) -> list[tuple[float, float]]:
+    return list(zip(found.low.tolist(), found.high.tolist(), strict=True))
+
+
+def test_clamp_with_crossed_ends_may_give_either() -> None:
+    x = Range(*ends((0.0, 0.5), (0.0, 0.5), (0.0, 9.0), (0.0, 9.0)))
+    least = Range(*ends((2.0, 2.0), (0.25, 0.25), (2.0, 2.0), (1.0, 3.0)))
+    most = Range(*ends((1.0, 1.0), (4.0, 4.0), (1.0, 1.0), (2.0, 4.0)))
+    assert pairs(arithmetic.clamp(x, least, most)) == [(1.0, 2.0), (0.25, 0.5), (1.0, 2.0), (1.0, 4.0)]
+
+
+def test_angle_on_the_negative_axis_has_either_sign() -> None:
+    y = Range(*ends((-1.0, 1.0), (-1.0, 1.0), (0.5, 1.0)))
+    x = Range(*ends((-2.0, -1.0), (1.0, 2.0), (-2.0, -1.0)))
+    context = Context(load_table("opencl"), CauseBook(), 3)
+    low, high = zip(*pairs(elementary.arc_tangent(context, y, x)), strict=True)
+    assert low[0] <= -math.pi and high[0] >= math.pi
+    assert low[1] > -1.0 and high[1] < 1.0
+    assert low[2] > 2.0 and high[2] < 3.0
+
+
+@pytest.mark.parametrize("name", [n for n in TABLES if load_table(n).row("/").zero])
+def test_zero_may_be_divided_though_the_promise_begins_above(name: str) -> None:
+    table = load_table(name)
+    row = table.row("/")
+    smallest = 2.0 ** row.magnitude["x"][0]
+    context = Context(table, CauseBook(), 3)
+    x = Range(*ends((0.0, 0.0), (smallest / 4.0, smallest / 2.0), (0.0, 1.0)))
+    found = arithmetic.divide(context, row, x, Range(*ends((1.0, 2.0), (1.0, 2.0), (1.0, 2.0))))
+    assert found.cause is not None
+    assert (found.cause > 0).tolist() == [False, True, True]
+    assert pairs(found)[0] == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("op", ["+", "-", "*", "^", "|", "&", "<<", ">>"])
+def test_known_lanes_of_integers_stay_exact(op: str) -> None:
+    """In lanes between two ends the result is one of those that the numbers between them give."""
+    a = Whole(np.array([12, 12]), np.array([12, 14]), False)
+    b = Whole(np.array([3, 3]), np.array([3, 3]), False)
+    exact = {"+": 15, "-": 9, "*": 36, "^": 15, "|": 15, "&": 0, "<<": 96, ">>": 1}[op]
+    (known, between) = pairs(whole.binary(op, a, b))
+    assert known == (exact, exact)
+    assert between[0] <= exact <= between[1]
+
+
+def test_bits_of_what_may_be_zero_or_no_number() -> None:
+    one, two = 0x3F800000, 0x40000000
+    x = Range(*ends((-1.0, 1.0), (1.0, 2.0), (-2.0, -1.0), (-INF, INF)))
+    every = (0, EVERY_WORD)
+    assert pairs(whole.float_to_bits(x)) == [every, (one, two), (one + 2**31, two + 2**31), every]
+    x.cause = np.array([0, 0, 0, 1], np.int16)
+    assert pairs(whole.float_to_bits(x)) == [every, (one, two), (one + 2**31, two + 2**31), every]
+    point = np.array([0.0, 1.0])
+    assert pairs(whole.float_to_bits(Range(point, point))) == [every, (one, one)]
+
+
+def test_absolute_value_of_anything_is_anything() -> None:
+    found = arithmetic.absolute(Range(*ends((-3.0, 2.0), (-INF, INF)), np.array([0, 1], np.int16)))
+    assert pairs(found) == [(0.0, 3.0), (-INF, INF)]
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_what_may_be_anything_has_infinite_ends(table: str, tmp_path: Path) -> None:
+    text = "def probe(x: X) -> f32:\n    return normalize(vec3(1.0 / x, 1.0, 1.0)).x\n"
+    found = permitted(library_of(tmp_path, text), "probe", {"x": np.array([0.0, 2.0], np.float32)}, table)
+    assert found.guaranteed.tolist() == [False, True]
+    assert np.isinf(found.low).tolist() == np.isinf(found.high).tolist() == [True, False]
+
+
+def test_lane_with_too_many_ways_keeps_the_hull(tmp_path: Path) -> None:
+    """WGSL's sine is off by 2^-11, so that its thousandfold may lie on either side of some integers."""
+    one = "    p = sin(x) * {0}.0\n    t = floor(p) - p\n"
+    two = "    q = sin(y) * {0}.0\n    u = floor(q) - q\n"
+    inputs = {"x": np.array([0.7], np.float32), "y": np.array([0.3], np.float32)}
+    widths = {}
+    for scale in (4000, 20000):
+        for name, body in {"once": one + "    u = y\n", "twice": one + two}.items():
+            text = f"def probe(x: X, y: X) -> f32:\n{body.format(scale)}    return t + u\n"
+            library = library_of(tmp_path / f"{name}{scale}", text)
+            followed = permitted(library, "probe", inputs, "wgsl")
+            hull = permitted(library, "probe", inputs, "wgsl", follow_forks=False)
+            widths[name, scale] = float((followed.high - followed.low)[0] / (hull.high - hull.low)[0])
+    assert widths["once", 4000] < 0.5 and widths["once", 20000] < 0.5
+    assert widths["twice", 4000] < 0.5
+    assert widths["twice", 20000] == 1.0
+
+
+def test_every_target_has_its_table() -> None:
+    assert dict(DEFAULT_TABLES) == {target: target for target in TARGETS}
