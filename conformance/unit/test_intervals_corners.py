@@ -114,8 +114,8 @@ def test_lane_with_too_many_ways_keeps_the_hull(tmp_path: Path) -> None:
         for name, body in {"once": one + "    u = y\n", "twice": one + two}.items():
             text = f"def probe(x: X, y: X) -> f32:\n{body.format(scale)}    return t + u\n"
             library = library_of(tmp_path / f"{name}{scale}", text)
-            followed = permitted(library, "probe", inputs, "wgsl")
-            hull = permitted(library, "probe", inputs, "wgsl", follow_forks=False)
+            followed: Any = permitted(library, "probe", inputs, "wgsl")
+            hull: Any = permitted(library, "probe", inputs, "wgsl", follow_forks=False)
             widths[name, scale] = float((followed.high - followed.low)[0] / (hull.high - hull.low)[0])
     assert widths["once", 4000] < 0.5 and widths["once", 20000] < 0.5
     assert widths["twice", 4000] < 0.5
