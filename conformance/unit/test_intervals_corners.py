@@ -99,7 +99,9 @@ def test_absolute_value_of_anything_is_anything() -> None:
 @pytest.mark.parametrize("table", TABLES)
 def test_what_may_be_anything_has_infinite_ends(table: str, tmp_path: Path) -> None:
     text = "def probe(x: X) -> f32:\n    return normalize(vec3(1.0 / x, 1.0, 1.0)).x\n"
-    found = permitted(library_of(tmp_path, text), "probe", {"x": np.array([0.0, 2.0], np.float32)}, table)
+    found: Any = permitted(
+        library_of(tmp_path, text), "probe", {"x": np.array([0.0, 2.0], np.float32)}, table
+    )
     assert found.guaranteed.tolist() == [False, True]
     assert np.isinf(found.low).tolist() == np.isinf(found.high).tolist() == [True, False]
 
