@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, cast
@@ -56,15 +56,23 @@ def _bits_to_float(x: Array) -> Array:
     return np.asarray(x, np.uint32).view(np.float32)
 
 
+def stacked(columns: Sequence[Array], axis: int = -1) -> Array:
+    """Vectors from their components (N,), component after component in memory: operations of numpy then run
+    along the lanes, three to four times as fast as along a vector."""
+    assert axis == -1
+    return np.array(columns).T
+
+
 def _numpy_namespace(floats: type[np.generic]) -> SimpleNamespace:
     def to_float(x: Array) -> Array:
         return _bits_to_float(x).astype(floats)
 
-    names = "abs minimum maximum divide floor sqrt exp exp2 log log2 sin cos arctan2 stack"
+    names = "abs minimum maximum divide floor sqrt exp exp2 log log2 sin cos arctan2"
     logic = "logical_and logical_or logical_not"
     functions = {name: getattr(np, name) for name in f"{names} {logic}".split()}
     return SimpleNamespace(
         **functions,
+        stack=stacked,
         float_to_bits=_float_to_bits,
         bits_to_float=to_float,
         lookup_level=lookup_in(floats, np.floor),
@@ -128,7 +136,7 @@ def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Val
         a = np.asarray(a, dtype=object)
     else:
         with np.errstate(over="ignore"):  # a number beyond the largest half becomes infinite
-            a = a.astype(arithmetic.dtype(element))
+            a = a.astype(arithmetic.dtype(element), order="F")  # as `stacked` has vectors
     shape: tuple[int, ...] = (type_.size,) if isinstance(type_, Vector) else ()
     if a.shape == shape:
         a = a[None]
@@ -180,6 +188,13 @@ def broadcast(value: Value, count: int) -> Value:
     if isinstance(value, dict):
         return {n: broadcast(v, count) for n, v in value.items()}
     return np.broadcast_to(value, (count, *value.shape[1:]))
+
+
+def row_by_row(value: Value) -> Value:
+    """The value with vectors one after the other in memory, as callers expect what they sum or write."""
+    if isinstance(value, dict):
+        return {n: row_by_row(v) for n, v in value.items()}
+    return np.ascontiguousarray(value)
 
 
 def choose(condition: Array, if_true: Value, if_false: Value) -> Value:

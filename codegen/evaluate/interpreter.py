@@ -13,9 +13,19 @@ from typing import Any, cast
 
 import numpy as np
 
-from codegen.evaluate.arrays import Arithmetic, Array, Value, broadcast, choose, convert_inputs
+from codegen.evaluate.arrays import (
+    Arithmetic,
+    Array,
+    Value,
+    broadcast,
+    choose,
+    convert_inputs,
+    row_by_row,
+    stacked,
+)
 from codegen.evaluate.arrays import arithmetic as find_arithmetic
-from codegen.evaluate.memory import Memory, outer_calls, variables
+from codegen.evaluate.loops import Together, joined, lanes, together
+from codegen.evaluate.memory import Memory
 from codegen.evaluate.textures import as_map
 from codegen.half import half_rules
 from codegen.ir import nodes as ir
@@ -57,7 +67,7 @@ def evaluate(
         arrays, count = memory.inputs(function, inputs, chosen)
     arrays = with_edges(function, arrays)
     with np.errstate(all="ignore"):  # lanes that a branch does not take may overflow or divide by zero
-        return Frame(find, chosen, function, arrays, count, memory).run()
+        return row_by_row(Frame(find, chosen, function, arrays, count, memory).run())
 
 
 def with_edges(function: ir.Function, arrays: dict[str, Value]) -> dict[str, Value]:
@@ -85,8 +95,19 @@ def _alike(kind: np.dtype[Any], value: int, count: int) -> Array:
     return np.broadcast_to(kind.type(value), (count,))
 
 
+@functools.lru_cache(16)
+def _numbered(start: int, stop: int, count: int) -> Array:
+    """The numbers of a loop's iterations, each in so many lanes; not to be written to."""
+    numbers = np.repeat(np.arange(start, stop, dtype=np.int32), count)
+    numbers.setflags(write=False)
+    return numbers
+
+
 class Frame:
     """One call: its locals, which lanes still run, and what has been returned so far."""
+
+    takes_loops_apart = True
+    """Whether loops may be evaluated all iterations at once, in other expressions than the function's own."""
 
     def __init__(
         self,
@@ -103,48 +124,85 @@ class Frame:
         self.scope: dict[str, Value] = dict(inputs)
         self.count = count
         self.memory = memory
-        self.made: Mapping[ir.Call, Value] = {}
+        self.made: Mapping[int, Value] = {}
         self.result: Value | None = None
-        self.returned: Array = np.zeros(count, np.bool_)
+        self.returned: Array | None = None
 
     def run(self) -> Value:
-        self.block(self.function.body, np.ones(self.count, np.bool_))
+        self.block(self.function.body, None)
         assert self.result is not None
         return self.result
 
-    def block(self, body: tuple[ir.Stmt, ...], active: Array) -> None:
+    def block(self, body: tuple[ir.Stmt, ...], active: Array | None) -> None:
+        """Run statements for the active lanes; None: all lanes, so that nothing has to be chosen."""
         for s in body:
             match s:
                 case ir.Let():
                     self.scope[s.name] = self.whole(s.value)
                 case ir.Assign():
-                    value = self.whole(s.value)
-                    live = active & ~self.returned
-                    self.scope[s.name] = value if live.all() else choose(live, value, self.scope[s.name])
+                    value, live = self.whole(s.value), self.live(active)
+                    if live is not None and not live.all():
+                        value = choose(live, value, self.scope[s.name])
+                    self.scope[s.name] = value
                 case ir.If():
                     condition = self.array(s.condition)
-                    self.block(s.then, active & condition)
-                    self.block(s.orelse, active & ~condition)
+                    self.block(s.then, condition if active is None else active & condition)
+                    self.block(s.orelse, ~condition if active is None else active & ~condition)
                 case ir.For():
                     self.loop(s, active)
                 case ir.Return():
-                    value = self.whole(s.value)
-                    live = active & ~self.returned
+                    value, live = self.whole(s.value), self.live(active)
+                    if live is None:
+                        live = np.ones(self.count, np.bool_)
                     self.result = value if self.result is None else choose(live, value, self.result)
-                    self.returned = self.returned | live
+                    self.returned = live if self.returned is None else self.returned | live
 
-    def loop(self, s: ir.For, active: Array) -> None:
+    def live(self, active: Array | None) -> Array | None:
+        """The active lanes that have not returned; None: all lanes."""
+        if self.returned is None:
+            return active
+        return ~self.returned if active is None else active & ~self.returned
+
+    def loop(self, s: ir.For, active: Array | None) -> None:
         """As many iterations as the lane that runs longest has; the others wait."""
+        apart = together(s) if active is None and self.returned is None and self.takes_loops_apart else None
+        if apart is not None:
+            self.iterations(s, apart)
+            return
         if s.limit is None:
             for i in range(s.start, s.stop):
                 self.scope[s.name] = _alike(np.dtype(np.int32), i, self.count)
                 self.block(s.body, active)
             return
-        limit = self.array(s.limit)
-        most = int(limit[active & ~self.returned].max(initial=0))
+        limit, live = self.array(s.limit), self.live(active)
+        most = int((limit if live is None else limit[live]).max(initial=0))
         for i in range(s.start, min(s.stop, most)):
             self.scope[s.name] = _alike(limit.dtype, i, self.count)
-            self.block(s.body, active & (limit > i))
+            self.block(s.body, limit > i if active is None else active & (limit > i))
+
+    def iterations(self, s: ir.For, apart: Together) -> None:
+        """All iterations of a loop at once, then what each hands to the next."""
+        steps, count = range(s.start, s.stop), self.count
+        scope = {name: self.joined([self.scope[name]] * len(steps)) for name in apart.outer}
+        for name, array in apart.elements.items():
+            value = self.scope[array]
+            assert isinstance(value, dict)
+            scope[name] = self.joined([value.get(str(i), value["0"]) for i in steps])
+        scope[s.name] = _numbered(s.start, s.stop, count)
+        inner = Frame(self.find, self.arithmetic, self.function, scope, count * len(steps), self.memory)
+        inner.block(apart.lets, None)
+        for k, i in enumerate(steps):
+            self.scope[s.name] = _alike(np.dtype(np.int32), i, count)
+            for name in apart.inner:
+                self.scope[name] = lanes(inner.scope[name], k * count, (k + 1) * count)
+            for end in apart.ends:
+                self.scope[end.name] = self.expr(end.value)
+
+    def joined(self, values: list[Value]) -> Value:
+        """The lanes of several values, one after the other; remembered where there is a memory."""
+        if self.memory is None:
+            return joined(values)
+        return self.memory.value("lanes", values, lambda: joined(values))
 
     def whole(self, e: ir.Expr) -> Value:
         """The value of a statement's expression or of an argument; remembered where there is a memory."""
@@ -152,7 +210,9 @@ class Frame:
             return self.expr(e)
         if isinstance(e, ir.Call):
             return self.call(e)
-        made = {call: self.call(call) for call in outer_calls(e)}
+        known = self.memory.prepared(e)
+        scope = self.scope
+        made = {id(call): self.call(call) for call in known.calls} if known.calls else {}
 
         def make() -> Value:
             self.made = made
@@ -160,7 +220,8 @@ class Frame:
             self.made = {}
             return value
 
-        return self.memory.value(e, [*(self.scope[name] for name in variables(e)), *made.values()], make)
+        of = [*[scope[x] for x in known.variables], *made.values()]
+        return self.memory.value(known.number, of, make, self.count)
 
     def array(self, e: ir.Expr) -> Array:
         value = self.expr(e)
@@ -187,7 +248,7 @@ class Frame:
                 # What only a map tells has one lane.
                 return broadcast(found, self.count) if len(found) != self.count else found
             case ir.Call():
-                return self.made[e] if e in self.made else self.call(e)
+                return self.made[id(e)] if id(e) in self.made else self.call(e)
             case ir.Construct():
                 return self.construct(e.type, [self.expr(a) for a in e.args])
             case ir.Convert():
@@ -239,10 +300,11 @@ class Frame:
     def call(self, e: ir.Call) -> Value:
         function = self.find(e.function)
         inputs = {p.name: self.whole(a) for p, a in zip(function.parameters, e.args, strict=True)}
-        frame = self.inner(function, inputs)
         if self.memory is None:
-            return frame.run()
-        return self.memory.value(function.name, list(inputs.values()), frame.run)
+            return self.inner(function, inputs).run()
+        return self.memory.value(
+            function.name, list(inputs.values()), lambda: self.inner(function, inputs).run(), self.count
+        )
 
     def inner(self, function: ir.Function, inputs: dict[str, Value]) -> Frame:
         """The frame of a call."""
@@ -258,7 +320,7 @@ class Frame:
             columns += [part] if part.ndim == 1 else [part[:, k] for k in range(part.shape[1])]
         if len(columns) == 1:
             columns *= type_.size
-        return np.stack(columns, axis=-1)
+        return stacked(columns)
 
     def convert(self, type_: Type, value: Array) -> Array:
         if isinstance(type_, Vector):

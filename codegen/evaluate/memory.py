@@ -2,14 +2,14 @@
 
 Values are the same object if and only if they came from the same expression over the same objects, so an
 expression is known by itself and by the objects that its variables stand for, a call by the function's name
-and its arguments. What is remembered keeps those objects alive. A memory serves one arithmetic and one number
-of lanes, and functions that are called by one name have to be the same throughout.
+and its arguments. What is remembered keeps those objects alive. A memory serves one arithmetic and inputs
+of one length, and functions that are called by one name have to be the same throughout.
 """
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from codegen.evaluate.arrays import Arithmetic, Value, convert_inputs
@@ -19,12 +19,29 @@ MOST = 4000
 """Values that are remembered; then all are forgotten. At 2500 lanes of three floats each takes 30 kB."""
 
 
-class Memory:
-    """Remembers values while functions are compared over the same inputs."""
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """What asking for an expression takes: its number, its variables, and its calls that are in no other's
+    arguments."""
 
-    def __init__(self) -> None:
+    number: int
+    variables: tuple[str, ...]
+    calls: tuple[ir.Call, ...]
+    expression: ir.Expr
+
+
+class Memory:
+    """Remembers values while functions are compared over the same inputs.
+
+    most  values that are remembered; then all are forgotten
+    """
+
+    def __init__(self, most: int = MOST) -> None:
+        self._most = most
         self._values: dict[tuple[object, ...], tuple[Value, list[Value]]] = {}
         self._inputs: dict[tuple[object, ...], tuple[Value, Any, int]] = {}
+        self._prepared: dict[int, Prepared] = {}
+        self._numbers: dict[ir.Expr, int] = {}
 
     def inputs(
         self, function: ir.Function, given: Mapping[str, Any], arithmetic: Arithmetic
@@ -41,26 +58,35 @@ class Memory:
         assert len(counts) == 1, "a memory serves one number of lanes"
         return {name: value for name, (value, _, _) in found.items()}, counts.pop()
 
-    def value(self, what: ir.Expr | str, of: list[Value], make: Callable[[], Value]) -> Value:
-        """The value of an expression over those of its variables and calls, or of a call over its own."""
-        key = (what, *map(id, of))
+    def prepared(self, e: ir.Expr) -> Prepared:
+        """The number that equal expressions share, with what it depends on; looked up once per object."""
+        found = self._prepared.get(id(e))
+        if found is None:
+            number = self._numbers.setdefault(e, len(self._numbers))
+            found = self._prepared[id(e)] = Prepared(number, variables(e), tuple(outer_calls(e)), e)
+        return found
+
+    def value(self, what: int | str, of: list[Value], make: Callable[[], Value], lanes: int = 0) -> Value:
+        """The value of an expression, by its number, over those of its variables and calls; or of a call, by
+        its function's name, over its own; in so many lanes."""
+        key = (what, lanes, *map(id, of))
         known = self._values.get(key)
         if known is None:
-            if len(self._values) >= MOST:
+            if len(self._values) >= self._most:
                 self._values.clear()
             known = self._values[key] = make(), of
         return known[0]
 
 
-@functools.lru_cache(1 << 16)
 def variables(e: ir.Expr) -> tuple[str, ...]:
     """The names of an expression's variables, each once."""
     return tuple(dict.fromkeys(x.name for x in ir.walk(e) if isinstance(x, ir.Var)))
 
 
-@functools.lru_cache(1 << 16)
-def outer_calls(e: ir.Expr) -> tuple[ir.Call, ...]:
+def outer_calls(e: ir.Expr) -> Iterator[ir.Call]:
     """The calls in an expression that are in no other call's arguments."""
     if isinstance(e, ir.Call):
-        return (e,)
-    return tuple(call for part in ir.children(e) for call in outer_calls(part))
+        yield e
+    else:
+        for part in ir.children(e):
+            yield from outer_calls(part)

@@ -36,6 +36,7 @@ class Term:
 class _Recorder(Frame):
     """An evaluation that notes the extremes of every scalar."""
 
+    takes_loops_apart = False
     seen: dict[int, tuple[float, float]]
 
     def expr(self, e: ir.Expr) -> Value:
@@ -95,9 +96,36 @@ def _size(e: ir.Expr, definitions: Mapping[str, ir.Expr]) -> int:
     return visit(e)
 
 
-def without(function: ir.Function, term: Term) -> ir.Function:
-    """The function with the replacement in the expression's place."""
+Parts = Mapping[int, frozenset[int]]
+"""Id of a statement's expression -> ids of all that is in it."""
+
+
+def parts_of(function: ir.Function) -> Parts:
+    """What each expression of a function holds; for as long as the function lives."""
+    found: dict[int, frozenset[int]] = {}
+    for s in ir.statements(function.body):
+        for e in _own(s):
+            found[id(e)] = frozenset(map(id, ir.walk(e)))
+    return found
+
+
+def _own(s: ir.Stmt) -> tuple[ir.Expr, ...]:
+    """The expressions of a statement that are not in statements within it."""
+    match s:
+        case ir.If():
+            return (s.condition,)
+        case ir.For():
+            return () if s.limit is None else (s.limit,)
+        case _:
+            return (s.value,)
+
+
+def without(function: ir.Function, term: Term, holds: Parts) -> ir.Function:
+    """The function with the replacement in the expression's place; `holds` as `parts_of` gives it."""
     target = term.expression
+
+    def changed(e: ir.Expr) -> ir.Expr:
+        return visit(e) if id(target) in holds[id(e)] else e
 
     def visit(e: ir.Expr) -> ir.Expr:
         if e is target:
@@ -111,14 +139,14 @@ def without(function: ir.Function, term: Term) -> ir.Function:
         for s in body:
             match s:
                 case ir.If():
-                    made.append(
-                        replace(s, condition=visit(s.condition), then=block(s.then), orelse=block(s.orelse))
-                    )
+                    condition = changed(s.condition)
+                    made.append(replace(s, condition=condition, then=block(s.then), orelse=block(s.orelse)))
                 case ir.For():
-                    limit = None if s.limit is None else visit(s.limit)
+                    limit = None if s.limit is None else changed(s.limit)
                     made.append(replace(s, limit=limit, body=block(s.body)))
                 case _:
-                    made.append(replace(s, value=visit(s.value)))
+                    value = changed(s.value)
+                    made.append(s if value is s.value else replace(s, value=value))
         return tuple(made)
 
     return replace(function, body=block(function.body))

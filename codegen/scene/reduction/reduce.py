@@ -23,7 +23,7 @@ from codegen.scene.description.lights import UNROLLED
 from codegen.scene.general import General
 from codegen.scene.proof.errors import Measured, Reference
 from codegen.scene.proof.points import Points
-from codegen.scene.reduction.drops import Term, terms, without
+from codegen.scene.reduction.drops import Term, parts_of, terms, without
 from codegen.scene.reduction.knowledge import Knowledge, knowledge, model_ranges
 from codegen.scene.reduction.loosen import BUNDLES, SPLAT, loosened
 from codegen.scene.reduction.prices import Prices
@@ -278,7 +278,8 @@ class Reducer:
             few = self.search.screen.points.inputs
             given = {p.name: few[p.name] for p in function.parameters}
             found = terms(self.library, function, given)
-            self._without[function.body] = [(term, without(function, term)) for term in found]
+            holds = parts_of(function)
+            self._without[function.body] = [(term, without(function, term, holds)) for term in found]
         return self._without[function.body]
 
     def witnesses(self, one: Specialised, other: Specialised) -> int:

@@ -1,0 +1,115 @@
+"""Loops whose iterations hardly depend on each other, evaluated all at once: lanes times iterations.
+
+before   for i in range(8): a = f(x, p[i]); total = total + g(a)
+after    a = f(x, p) and part = g(a) over eight times the lanes; then total = total + part, one by one
+
+Every operation is the same on every lane, so values are the same to the bit. What an interpreter spends on
+each operation is spent once, not once an iteration.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+
+from codegen.evaluate.arrays import Array, Value
+from codegen.evaluate.textures import as_map
+from codegen.ir import nodes as ir
+
+
+@dataclass(frozen=True)
+class Together:
+    """A loop taken apart.
+
+    lets      what all iterations compute at once
+    ends      what one iteration hands to the next, over names of `lets`
+    elements  name -> array of which it is the element that the iteration names
+    outer     names that `lets` take from around the loop
+    inner     names of `lets` that `ends` use
+    """
+
+    lets: tuple[ir.Let, ...]
+    ends: tuple[ir.Assign, ...]
+    elements: Mapping[str, str]
+    outer: tuple[str, ...]
+    inner: tuple[str, ...]
+
+
+@functools.lru_cache(512)
+def together(s: ir.For) -> Together | None:
+    """The loop taken apart; None where it branches, ends early, or defines something by what it hands on."""
+    if s.limit is not None or s.stop - s.start < 2:
+        return None
+    body = [x for x in s.body if isinstance(x, ir.Let | ir.Assign)]
+    if len(body) < len(s.body):
+        return None
+    assigned = {x.name for x in body if isinstance(x, ir.Assign)}
+    own = {x.name for x in body if isinstance(x, ir.Let)}
+    if assigned & own or s.name in assigned:
+        return None
+    lets: list[ir.Let] = []
+    ends: list[ir.Assign] = []
+    elements: dict[str, str] = {}
+
+    def element(e: ir.Expr) -> ir.Expr:
+        """An element of an array around the loop, by a name of its own where the iteration names it."""
+        match e:
+            case ir.Index(value=ir.Var(name=array), index=ir.Var(name=s.name)) if array not in own | assigned:
+                elements[f"{array}[{s.name}]"] = array
+                return ir.Var(e.type, f"{array}[{s.name}]")
+        return e
+
+    def part(e: ir.Expr) -> ir.Expr:
+        """The expression over parts that no iteration before tells."""
+        if isinstance(e, ir.Const) or (isinstance(e, ir.Var) and e.name in assigned):
+            return e
+        if assigned.isdisjoint(_names(e)):
+            name = f"part {len(lets)}"
+            lets.append(ir.Let(name, e))
+            return ir.Var(e.type, name)
+        return ir.rebuild(e, tuple(map(part, ir.children(e))))
+
+    for x in body:
+        value = ir.map_expr(x.value, element)
+        if isinstance(x, ir.Let):
+            if not assigned.isdisjoint(_names(value)):
+                return None
+            lets.append(ir.Let(x.name, value))
+        else:
+            ends.append(ir.Assign(x.name, part(value)))
+    made = {x.name for x in lets} | set(elements)
+    needed = {name for x in lets for name in _names(x.value)}
+    return Together(
+        tuple(lets),
+        tuple(ends),
+        elements,
+        tuple(sorted(needed - made - {s.name})),
+        tuple(sorted({name for x in ends for name in _names(x.value)} & made)),
+    )
+
+
+def _names(e: ir.Expr) -> set[str]:
+    return {x.name for x in ir.walk(e) if isinstance(x, ir.Var)}
+
+
+def joined(values: list[Value]) -> Value:
+    """The lanes of several values, one after the other; a map stays what it is."""
+    first = values[0]
+    if as_map(first) is not None:
+        return first
+    if isinstance(first, dict):
+        return {n: joined([cast(dict[str, Value], v)[n] for v in values]) for n in first}
+    return np.concatenate(cast(list[Array], values))
+
+
+def lanes(value: Value, first: int, last: int) -> Value:
+    """Some lanes of a value."""
+    if as_map(value) is not None:
+        return value
+    if isinstance(value, dict):
+        return {n: lanes(v, first, last) for n, v in value.items()}
+    return value[first:last]

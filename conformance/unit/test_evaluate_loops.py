@@ -1,0 +1,84 @@
+"""Loops evaluated all iterations at once give the bits of one iteration after the other.
+
+Plan.
+  scene   a general function with two loops over arrays of lights, with a memory and without
+  forms   sums, products, a number of the iteration, a value that is carried and used, a branch inside, an
+          assigned local: whatever is taken apart and whatever is not
+  apart   which of these loops are taken apart
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from codegen.evaluate import evaluate
+from codegen.evaluate.interpreter import Frame
+from codegen.evaluate.loops import together
+from codegen.evaluate.memory import Memory
+from codegen.ir import nodes as ir
+from codegen.library import Library, load_library
+from codegen.scene.description.document import read_scene
+from codegen.scene.general import general_function
+from codegen.scene.proof.points import draw as scene_points
+from conformance.unit.support.sources import library_of
+
+LIBRARY = load_library()
+COUNT = 40
+LOOPS = '[shade]\nmodel = "fakefur"\n[lights]\ndirectional = 5\npoint = 6\n'
+FORMS = {
+    "sum": ("total = total + sin(x * f32(i))", True),
+    "two": ("a = x * f32(i)\n        total = total + a\n        other = other + total * a", True),
+    "product": ("total = (total + x) * (f32(i) - y)", True),
+    "carried": ("a = sin(total)\n        total = a + x", False),
+    "branch": ("if x > f32(i):\n            total = total + y", False),
+}
+"""A loop's body, and whether it is taken apart."""
+
+
+def source(body: str) -> str:
+    return (
+        "def probe(x: X, y: X) -> f32:\n    total = 1.0\n    other = y\n"
+        f"    for i in range(2, 7):\n        {body}\n    return total + 0.5 * other\n"
+    )
+
+
+def both(
+    monkeypatch: pytest.MonkeyPatch, library: Library, name: str, inputs: Any, memory: bool
+) -> list[bytes]:
+    found = []
+    for apart in (True, False):
+        monkeypatch.setattr(Frame, "takes_loops_apart", apart)
+        value = evaluate(library, name, inputs, memory=Memory() if memory else None)
+        found.append(np.ascontiguousarray(value).tobytes())
+    return found
+
+
+@pytest.mark.parametrize("memory", [True, False])
+def test_scene_with_loops_over_lights(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, memory: bool) -> None:
+    (tmp_path / "scene.toml").write_text(LOOPS, encoding="utf-8")
+    scene = read_scene(tmp_path / "scene.toml", LIBRARY)
+    general = general_function(scene)
+    library = LIBRARY.with_functions([general.function])
+    loops = [s for s in ir.statements(general.function.body) if isinstance(s, ir.For)]
+    assert len(loops) == 2
+    assert all(together(s) for s in loops)
+    inputs = scene_points(scene, general, COUNT).inputs
+    one, other = both(monkeypatch, library, general.function.name, inputs, memory)
+    assert one == other
+
+
+@pytest.mark.parametrize("memory", [True, False])
+@pytest.mark.parametrize("form", FORMS)
+def test_forms_of_loops(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, form: str, memory: bool) -> None:
+    body, apart = FORMS[form]
+    library = library_of(tmp_path, source(body))
+    (loop,) = [s for s in ir.statements(library.function("probe").body) if isinstance(s, ir.For)]
+    assert (together(loop) is not None) == apart
+    generator = np.random.default_rng(5)
+    inputs = {name: generator.uniform(-4.0, 8.0, COUNT).astype(np.float32) for name in "xy"}
+    one, other = both(monkeypatch, library, "probe", inputs, memory)
+    assert one == other
