@@ -109,6 +109,13 @@ def inputs_of(row: Row) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("row", ROWS, ids=row_id)
+def test_row_says_what_it_is(row: Row) -> None:
+    """A kind that the pass knows, and a note: neither is taken for the other."""
+    assert row.kind in ("exact", "finite", "real", "unit")
+    assert row.note not in ("", row.kind)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=row_id)
 def test_replacement_is_a_permitted_result_of_the_pattern(row: Row) -> None:
     library = load_library()
     before = function_of(row, row.pattern, Values())
