@@ -19,7 +19,7 @@ def test_every_way_of_drawing_comes_closer() -> None:
     if isinstance(answer, TargetUnavailable):
         pytest.skip(str(answer))
     path = SCENES / "furry-bunny.toml"
-    studio = set_up_fur(load_library(), path, size=(28, 28), supersample=1, subdivide=0)
+    studio = set_up_fur(load_library(), path, size=(24, 24), supersample=1, subdivide=0)
     found = converge(studio, ("numpy32", "glsl"), (3, 9), 17)
     assert [one.name for one in found.series] == ["rays on numpy32", "drawn by OpenGL"]
     for one in found.series:

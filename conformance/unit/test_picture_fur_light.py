@@ -4,8 +4,9 @@ Plan.
   agreement  the scene with both: OpenGL against WebGPU, and against rays on the evaluator and OpenCL
   map        its lights stand behind the listed ones, scaled; more lights come closer to the whole map; one
              lookup along the normal cannot replace them
-  shadows    a ball over a plate: dark below the ball, light beside it; a ball on its own is lit all over the
-             half that faces a light; lights beyond the third share one value
+  surfaces   a scene without fur is lit by a map too, and by nothing else if it lists no light
+  shadows    they darken and never brighten; a ball over a plate: dark below the ball, light beside it; lights
+             beyond the third share one value; the disc of a light is even
   stages     room for every light; nothing of shadows where there are none
   refused    maps that are missing, no map or black, keys without a map, too many lights
 """
@@ -24,10 +25,12 @@ from codegen.fur.layout import FIN_VERTEX, FUR_VERTEX, MOST_LIGHTS
 from codegen.fur.stages import stage_texts
 from codegen.library import load_library
 from codegen.maps.image import exr
+from conformance.picture.backends import models, open_backend
 from conformance.picture.fur_picture import draw_fur
 from conformance.picture.fur_render import FurStudio, set_up_fur
 from conformance.picture.fur_shadow import HALF_ANGLE, disc, with_shadows
 from conformance.picture.fur_sky import errors
+from conformance.picture.render import set_up
 from conformance.picture.scene import Light
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import steps_apart
@@ -41,14 +44,14 @@ ABOVE = Light((0.0, 1.0, 0.0), (1.0, 1.0, 1.0))
 
 @pytest.fixture(scope="module")
 def dawn() -> FurStudio:
-    made = set_up_fur(LIBRARY, SCENE, size=(64, 64), supersample=1, subdivide=0)
+    made = set_up_fur(LIBRARY, SCENE, size=(52, 52), supersample=1, subdivide=0)
     return replace(made, fur=replace(made.fur, layers=4))
 
 
 @pytest.fixture(scope="module")
 def drawn(dawn: FurStudio) -> dict[str, Any]:
     """The picture by target, where there is a driver."""
-    few = replace(dawn, picture=replace(dawn.picture, lights=dawn.picture.lights[:5]))
+    few = replace(dawn, picture=replace(dawn.picture, lights=dawn.picture.lights[:4]))
     found = {"numpy32": draw_fur(few, "numpy32")[0]}
     for target in ("glsl", "wgsl", "opencl"):
         if not isinstance(probe(target), TargetUnavailable):
@@ -92,6 +95,29 @@ def test_more_lights_come_closer_to_the_map(dawn: FurStudio) -> None:
     found = errors(dawn, (2, 32), points=12, rows=8)
     assert found.by_lights[32] < tolerance("fur_sky_lights")
     assert found.by_lights[2] > 2.0 * found.by_lights[32] and found.lookup > 2.0 * found.by_lights[32]
+
+
+def test_a_map_alone_lights_a_surface(tmp_path: Path) -> None:
+    text = (SCENE.parent / "brushed-bunny.toml").read_text(encoding="utf-8")
+    text = text[: text.index("[[render.light]]")].replace("../data", str(SCENE.parents[1] / "data"))
+    text = text.replace("directional = 1", f'environment = "{SCENE.parents[1] / "data" / "dawn.exr"}"')
+    path = tmp_path / "scene.toml"
+    path.write_text(text.replace("[768, 768]", "[24, 24]").replace("subdivide = 2", "subdivide = 0"))
+    studio = set_up(path, models(LIBRARY))
+    assert len(studio.picture.lights) == 8 == len(studio.seen.l)
+    shaded = studio.shade(open_backend("numpy", LIBRARY))
+    assert np.isfinite(shaded).all() and 0.05 < shaded.mean() < 1.0
+
+
+def test_shadows_only_darken(dawn: FurStudio) -> None:
+    if isinstance(probe("glsl"), TargetUnavailable):
+        pytest.skip(str(probe("glsl")))
+    bright = replace(dawn, shading=replace(dawn.shading, shadowed=False))
+    with_them, without = (draw_fur(made, "glsl")[0] for made in (dawn, bright))
+    assert np.array_equal(with_them[..., 3], without[..., 3])
+    darker = without[..., :3] - with_them[..., :3]
+    assert darker.min() > -tolerance("fur_half_float")
+    assert (darker.max(axis=2) > 0.02).mean() > 0.04
 
 
 @pytest.fixture(scope="module")
