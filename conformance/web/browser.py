@@ -78,6 +78,19 @@ def served(folder: Path, names: Iterable[str]) -> Iterator[str]:
             thread.join()
 
 
+def lacking(driver: Any, url: str) -> str:
+    """Why this browser cannot draw with both backends; empty where it can."""
+    driver.get(url)
+    webgl2, webgpu = driver.execute_async_script(
+        "const webgl2 = Boolean(new OffscreenCanvas(1, 1).getContext('webgl2'));"
+        "const adapter = navigator.gpu ? navigator.gpu.requestAdapter() : Promise.resolve(null);"
+        "adapter.then((found) => arguments[0]([webgl2, Boolean(found)]))"
+    )
+    if not webgl2:
+        return "Chromium has no WebGL2 here: apt-get install --no-install-recommends libegl1 libgl1"
+    return "" if webgpu else "Chromium has no WebGPU here"
+
+
 def view(driver: Any, width: int, height: int, *, dark: bool = False) -> None:
     """Sets the size of the page's view in CSS pixels, however small, and its colours."""
     metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}

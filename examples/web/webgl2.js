@@ -54,7 +54,7 @@ export class Webgl2Renderer {
       this.programs.set(kit.url, made);
     }
     if (!this.meshes.has(kit.meshUrl)) {
-      this.meshes.set(kit.meshUrl, new Map(kit.passes.map((pass) => [pass.name, mesh(gl, kit, pass)])));
+      this.meshes.set(kit.meshUrl, meshOf(gl, kit));
     }
   }
 
@@ -195,20 +195,32 @@ function program(gl, name, vertex, fragment) {
   return made;
 }
 
-function mesh(gl, kit, pass) {
-  const described = kit.about.buffers[pass.vertices];
-  const array = gl.createVertexArray();
-  gl.bindVertexArray(array);
-  gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-  gl.bufferData(gl.ARRAY_BUFFER, kit.buffer(pass.vertices), gl.STATIC_DRAW);
-  for (const { location, floats, offset } of described.attributes) {
-    gl.enableVertexAttribArray(location);
-    gl.vertexAttribPointer(location, floats, gl.FLOAT, false, described.stride, offset);
-  }
-  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-  gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, kit.buffer(pass.triangles), gl.STATIC_DRAW);
-  gl.bindVertexArray(null);
-  return { array, count: kit.about.buffers[pass.triangles].count };
+/** What each pass draws, by its name; a buffer that several passes draw is uploaded once. */
+function meshOf(gl, kit) {
+  const uploaded = new Map();
+  const upload = (kind, name) => {
+    if (uploaded.has(name)) {
+      gl.bindBuffer(kind, uploaded.get(name));
+      return;
+    }
+    uploaded.set(name, gl.createBuffer());
+    gl.bindBuffer(kind, uploaded.get(name));
+    gl.bufferData(kind, kit.buffer(name), gl.STATIC_DRAW);
+  };
+  const drawn = (pass) => {
+    const described = kit.about.buffers[pass.vertices];
+    const array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    upload(gl.ARRAY_BUFFER, pass.vertices);
+    for (const { location, floats, offset } of described.attributes) {
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, floats, gl.FLOAT, false, described.stride, offset);
+    }
+    upload(gl.ELEMENT_ARRAY_BUFFER, pass.triangles);
+    gl.bindVertexArray(null);
+    return { array, count: kit.about.buffers[pass.triangles].count };
+  };
+  return new Map(kit.passes.map((pass) => [pass.name, drawn(pass)]));
 }
 
 const COMPARE = { "less-equal": "LEQUAL", less: "LESS", always: "ALWAYS" };

@@ -81,7 +81,7 @@ export class WebgpuRenderer {
       this.pipelines.set(kit.url, made);
     }
     if (!this.meshes.has(kit.meshUrl)) {
-      this.meshes.set(kit.meshUrl, new Map(kit.passes.map((pass) => [pass.name, mesh(this.gpu, kit, pass)])));
+      this.meshes.set(kit.meshUrl, meshOf(this.gpu, kit));
     }
   }
 
@@ -195,18 +195,24 @@ async function moduleOf(device, name, code) {
   return module;
 }
 
-function mesh(device, kit, pass) {
+/** What each pass draws, by its name; a buffer that several passes draw is uploaded once. */
+function meshOf(device, kit) {
+  const uploaded = new Map();
   const upload = (name, use) => {
-    const data = kit.buffer(name);
-    const buffer = device.createBuffer({ size: data.byteLength, usage: use | GPUBufferUsage.COPY_DST });
-    device.queue.writeBuffer(buffer, 0, data);
-    return buffer;
+    if (!uploaded.has(name)) {
+      const data = kit.buffer(name);
+      const buffer = device.createBuffer({ size: data.byteLength, usage: use | GPUBufferUsage.COPY_DST });
+      device.queue.writeBuffer(buffer, 0, data);
+      uploaded.set(name, buffer);
+    }
+    return uploaded.get(name);
   };
-  return {
+  const drawn = (pass) => ({
     vertices: upload(pass.vertices, GPUBufferUsage.VERTEX),
     triangles: upload(pass.triangles, GPUBufferUsage.INDEX),
     count: kit.about.buffers[pass.triangles].count,
-  };
+  });
+  return new Map(kit.passes.map((pass) => [pass.name, drawn(pass)]));
 }
 
 function pipelineOf(device, layout, kit, pass, module) {

@@ -12,7 +12,7 @@ from codegen.library import load_library
 from conformance.picture.fur_render import FurStudio, set_up_fur
 from conformance.unit.web.furry_ball import write_furry_ball
 from conformance.unit.web.opened import Opened
-from conformance.web.browser import missing, open_browser, served, view
+from conformance.web.browser import lacking, missing, open_browser, served, view
 from conformance.web.build import page_files
 from conformance.web.choices import choices
 
@@ -45,6 +45,9 @@ def session(files: dict[str, bytes], tmp_path_factory: pytest.TempPathFactory) -
     folder = tmp_path_factory.mktemp("web") / "page"
     write_folder(folder, files)
     with served(folder, files) as url, open_browser() as driver:
+        reason = lacking(driver, f"{url}page.css")
+        if reason:
+            pytest.skip(reason)
         yield Opened(driver, url, folder)
 
 
