@@ -67,7 +67,7 @@ def panels(library: Library, plan: Mapping[str, Any], **changes: Any) -> list[Pa
             coat_changes[key] = tuple(value) if isinstance(value, list) else value
         coat = replace(studio.fur, **coat_changes)
         material = plan["materials"][entry["material"]] if "material" in entry else studio.material
-        shading = lit_shading(fur_shading(library, entry["model"]), studio.picture)
+        shading = lit_shading(fur_shading(library, entry["model"]), studio.picture, coat)
         missing = [slot.path for slot in shading.material if slot.path not in material]
         if missing:
             raise UserError(f'fur_plate.toml: panel "{entry["caption"]}" lacks {", ".join(missing)}')

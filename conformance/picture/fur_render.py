@@ -137,16 +137,19 @@ def set_up_fur(library: Library, path: Path, *, pictured: bool = True, **changes
         raise UserError(f"{path}: [render] size times supersample may be {LARGEST_SIDE} at most")
     bound = bind(scene, models(library))
     picture = lit_by_sky(scene, picture)
-    shading = lit_shading(fur_shading(library, bound.function), picture)
+    shading = lit_shading(fur_shading(library, bound.function), picture, scene.fur)
     mesh = grow(picture.mesh, scene.fur.spacing, scene.fur.combing, picture.subdivide, scene.fur.channels)
     if picture.shadows:
         mesh = with_shadows(mesh, picture.lights, scene.fur.length)
     return FurStudio(library, scene, picture, scene.fur, shading, bound.values, mesh)
 
 
-def lit_shading(shading: FurShading, picture: Picture) -> FurShading:
-    """The lighting of fur with room for a picture's lights, and with their shadows."""
-    return replace(shading, lights=max(LEAST_LIGHTS, len(picture.lights)), shadowed=picture.shadows)
+def lit_shading(shading: FurShading, picture: Picture, fur: Fur) -> FurShading:
+    """The lighting of fur with room for a picture's lights, with their shadows and the body's, if any."""
+    known = {} if fur.surface[0] else {next(iter(BODY)): 0.0}
+    return replace(
+        shading, lights=max(LEAST_LIGHTS, len(picture.lights)), shadowed=picture.shadows, known=known
+    )
 
 
 def open_drawing(studio: FurStudio, target: str, dialect: str | None = None) -> Drawing:

@@ -36,7 +36,7 @@ Doubles = npt.NDArray[np.float64]
 
 COUNTS = (2, 4, 8, 14, 32)
 POINTS, SEED, FACING = 48, 2024, 0.15
-ROUNDS, SIDE = 5, 160
+ROUNDS, SIDE = 9, 200
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def costs(studio: FurStudio, counts: Sequence[int], target: str) -> dict[int, fl
     for count in (0, *counts):
         lights = (*listed, *[Light((0.0, 1.0, 0.0), (0.1, 0.1, 0.1))] * count)
         picture = replace(studio.picture, lights=lights)
-        shading = lit_shading(studio.shading, picture)
+        shading = lit_shading(studio.shading, picture, studio.fur)
         made.append(Panel(str(count), replace(studio, picture=picture, shading=shading)))
     _, seconds = draw_in_turns(made, target, ROUNDS)
     return {count: cost / seconds[0] for count, cost in zip(counts, seconds[1:], strict=True)}

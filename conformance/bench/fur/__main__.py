@@ -47,6 +47,7 @@ def main(targets: tuple[str, ...], side: int, rounds: int, record: bool) -> None
         show(console, data)
     if record and kept:
         for data in kept:
+            RESULTS.mkdir(exist_ok=True)
             path = RESULTS / f"{slug(data['device'])}.json"
             write_text(path, as_json(data))
             console.print(f"{path}")
