@@ -67,9 +67,12 @@ def read_results(library: Library, path: Path) -> Results:
     functions = about.get("functions")
     if not isinstance(functions, dict) or not functions:
         raise UserError(f'{path}: "functions" holds no results')
-    for name, entry in functions.items():
+    for name in (*functions, *kit["functions"]):
         if name not in library.public:
             raise UserError(f"{path}: {unknown('function', name, library.public)}")
+    for name, entry in functions.items():
+        if name not in kit["functions"]:
+            raise UserError(f"{path}: {name} is none of its kit's functions")
         if not isinstance(entry, dict) or not isinstance(entry.get("vectors"), str):
             raise UserError(f'{path}: {name} lacks "vectors", which its vectors state')
         words = None
@@ -80,12 +83,11 @@ def read_results(library: Library, path: Path) -> Results:
             rows = arrays.get(name) if arrays is not None else entry.get("rows")
             words = _words(path, library.function(name), rows)
         computed[name] = Computed(entry["vectors"], words, failed)
-    wanted = tuple(name for name in kit["functions"] if name in library.public)
     return Results(
         path,
         lanes=kit["lanes"],
         family=kit["family"],
-        wanted=wanted,
+        wanted=tuple(dict.fromkeys(kit["functions"])),
         target=_text(path, about, "target"),
         table=_text(path, about, "table", needed=False),
         driver=_text(path, about, "driver"),
@@ -146,8 +148,8 @@ def _words(path: Path, function: Function, rows: Any) -> Words:
     wanted = result_rows(function)
     if rows is None:
         raise UserError(f"{path}: {function.name} has neither results nor a sentence why it failed")
-    if isinstance(rows, np.ndarray) and rows.ndim == 1:
-        rows = rows[None]
+    if isinstance(rows, np.ndarray) and rows.ndim < 2:
+        rows = np.atleast_1d(rows)[None]
     if not isinstance(rows, list | np.ndarray) or len(rows) != len(wanted):
         raise UserError(
             f"{path}: {function.name} has {len(wanted)} rows: {', '.join(r.path for r in wanted)}"

@@ -22,10 +22,12 @@ import numpy as np
 import pytest
 
 from codegen.cli import run
+from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.execute import flatten, unflatten
 from codegen.intervals import TABLES
 from codegen.kernels import kernel
+from codegen.kit.results import read_results
 from codegen.kit.rows import hexadecimal, input_rows, result_rows
 from codegen.library import load_library
 from codegen.version import VERSION
@@ -38,6 +40,8 @@ FUNCTIONS = ("sin_angle", "pcg3d", "strand_angles", "safe_pow")
 LANES = 16
 FAR = 4000
 """ULP that a result is moved by: outside every interval and every bound of sin_angle."""
+SEED = 20261122
+DAMAGES = 300
 Data = dict[str, Any]
 Capture = pytest.CaptureFixture[str]
 
@@ -296,6 +300,14 @@ def huge_kit(data: Data) -> None:
     data["kit"]["lanes"] = 10**12
 
 
+def function_beside_the_kit(data: Data) -> None:
+    data["kit"]["functions"].remove("pcg3d")
+
+
+def kit_of_a_lost_function(data: Data) -> None:
+    data["kit"]["functions"].append("strand_rim")
+
+
 def nothing_at_all(data: Data) -> None:
     data["functions"] = {}
 
@@ -315,6 +327,8 @@ def nothing_at_all(data: Data) -> None:
         (no_kit, 'holds no results: "kit" of kit.json is missing'),
         (text_for_a_number, 'row result holds "0.5f"; f32 is eight hexadecimal digits or a number'),
         (list_for_a_number, 'row result holds ["nan"]; f32 is eight hexadecimal digits or a number'),
+        (function_beside_the_kit, "pcg3d is none of its kit's functions"),
+        (kit_of_a_lost_function, 'unknown function "strand_rim"'),
         (huge_kit, '"kit": "lanes" is a number from 1 on'),
         (nothing_at_all, '"functions" holds no results'),
     ],
@@ -328,6 +342,30 @@ def test_what_cannot_be_judged_is_refused(
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert told in err and err.startswith(f"vair: {tmp_path / 'r.json'}" if "table" not in told else "vair: ")
+
+
+@pytest.mark.parametrize("end", ["json", "npz"])
+def test_changed_bytes_never_end_in_a_traceback(end: str, computed: Data, tmp_path: Path) -> None:
+    """Bytes at random places are changed, left out or doubled; what can still be read is read."""
+    stream = np.random.default_rng(SEED)
+    path = tmp_path / f"r.{end}"
+    few = {"sin_angle": computed["functions"]["sin_angle"]}
+    data = {**computed, "kit": {**computed["kit"], "functions": ["sin_angle"]}, "functions": few}
+    if end == "npz":
+        np.savez(path, about=np.array(json.dumps(data)), sin_angle=np.zeros((1, 3), np.float32))
+    else:
+        path.write_text(json.dumps(data), encoding="utf-8")
+    whole, refused = path.read_bytes(), 0
+    for _ in range(DAMAGES):
+        place = int(stream.integers(len(whole)))
+        new = [bytes([int(stream.integers(256))]), b"", whole[place : place + 9]][int(stream.integers(3))]
+        path.write_bytes(whole[:place] + new + whole[place + 1 :])
+        try:
+            read_results(load_library(), path)
+        except UserError as e:
+            refused += 1
+            assert str(e).startswith(str(path)) and "\n" not in str(e)
+    assert refused > DAMAGES // 10
 
 
 @pytest.mark.parametrize(
