@@ -39,7 +39,7 @@ def install(folder: Path, plan: Plan, *, force: bool = False) -> list[str]:
     try:
         with exclusive(folder):
             _clear(folder)
-            _finish(folder)
+            _finish(folder, force=force)
             return _install(folder, plan, force)
     except OSError as e:
         raise UserError(f'cannot write into "{folder}": {e.strerror or e}') from None
@@ -77,7 +77,7 @@ def _install(folder: Path, plan: Plan, force: bool) -> list[str]:
         shutil.rmtree(stage)
     beside = os.access(folder.parent, os.W_OK) and not os.path.ismount(folder)
     os.rename(_staged(folder, files, folder.parent if beside else folder), folder / UNFINISHED)
-    _finish(folder)
+    _finish(folder, force=force)
     return changed
 
 
@@ -130,15 +130,21 @@ def _clear(folder: Path) -> None:
                 shutil.rmtree(left)
 
 
-def _finish(folder: Path) -> None:
-    """Move a finished set into place, the lock last; may be repeated until it is done."""
+def _finish(folder: Path, *, force: bool) -> None:
+    """Move a finished set into place, the lock last; may be repeated until it is done.
+
+    force  drop a set whose lock cannot be read, which no interruption leaves
+    """
     stage = folder / UNFINISHED
     if not _is_folder(stage):
         return
     if not (stage / NAME).exists():  # the lock has moved, only the empty folder is left
         shutil.rmtree(stage)
         return
-    new = read_lock(stage / NAME)
+    new = read_old_lock(stage, force=force)
+    if new is None:
+        shutil.rmtree(stage)
+        return
     old = read_old_lock(folder, force=True)
     for name in [name for name in (old.files if old else {}) if name not in new.files]:
         if not links(folder, str(Path(name).parent)):

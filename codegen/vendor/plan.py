@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -35,7 +36,7 @@ class Plan:
     files: Mapping[str, str]
     library: Library
 
-    @property
+    @functools.cached_property
     def lock_text(self) -> str:
         """What goes into vair.lock."""
         return lock_text(self.lock)

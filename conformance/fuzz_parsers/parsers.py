@@ -93,21 +93,18 @@ def lock() -> Parser:
     other = plan_functions(load_library(), Options(("glsl/430",), ("sin_angle",)))
 
     def read(path: Path) -> object:
-        data = path.read_bytes()
+        found = read_lock(path)
         folder = path.parent / "vendored"
         shutil.rmtree(folder, ignore_errors=True)
         install(folder, plan)
         os.symlink(path.parent.parent, folder / "elsewhere")
-        (folder / NAME).write_bytes(data)
         (folder / UNFINISHED).mkdir()
         for name, text in other.files.items():
             (folder / UNFINISHED / name).write_text(text)
-        (folder / UNFINISHED / NAME).write_bytes(data)
-        try:
-            found = read_lock(folder / NAME)
-            states(folder, found, plan.files)
-        finally:
-            install(folder, plan, force=True)
+        for place in (folder, folder / UNFINISHED):
+            shutil.copyfile(path, place / NAME)
+        states(folder, found, plan.files)
+        install(folder, plan, force=True)
         return found
 
     return toml_parser("given.lock", read, [plan.lock_text, other.lock_text])
@@ -138,7 +135,13 @@ def kit() -> Parser:
     library = load_library()
     words = ["3f800000", 1.0, 0, "nan"]
     about = {
-        "kit": {"format": FORMAT, "version": VERSION, "lanes": 4, "family": 4, "functions": ["sin_angle"]},
+        "kit": {
+            "format": FORMAT,
+            "version": VERSION,
+            "lanes": 4,
+            "family": 4,
+            "functions": ["sin_angle", "frame_from_normal"],
+        },
         "target": "glsl",
         "driver": "own",
         "functions": {

@@ -42,10 +42,11 @@ def box(tmp_path: Path) -> Sandbox:
     return Sandbox(tmp_path)
 
 
-def test_seeded_damage_gets_a_sentence(named: tuple[str, Parser], box: Sandbox) -> None:
+@pytest.mark.parametrize("times", [1, pytest.param(50, marks=pytest.mark.nightly)])
+def test_seeded_damage_gets_a_sentence(times: int, named: tuple[str, Parser], box: Sandbox) -> None:
     name, parser = named
-    drawn = random.Random(f"{SEED} {name}")
-    for _ in range(RUNS.get(name, 80)):
+    drawn = random.Random(f"{SEED} {times} {name}")
+    for _ in range(times * RUNS.get(name, 80)):
         data = drawn.randbytes(drawn.randrange(200))
         print(f"python -m conformance.fuzz_parsers {name} --replay {data.hex()}")
         examine(box, parser.read, parser.file, mutated(data, parser.seeds, parser.trees, parser.write))

@@ -21,6 +21,7 @@ from typing import Any
 
 import pytest
 
+from codegen.errors import UserError
 from codegen.vendor import install as installing
 from codegen.vendor.exclusive import exclusive
 from codegen.vendor.install import install
@@ -92,6 +93,17 @@ def test_every_step_leaves_one_set(shared: bool, after: bool, tmp_path: Path) ->
         pytest.fail(f"more than {MOST_STEPS} steps")
     assert at > 5
     assert (mixed > 0) == shared
+
+
+def test_a_finished_set_that_somebody_damaged_is_dropped_only_by_force(tmp_path: Path) -> None:
+    folder = tmp_path / "v"
+    install(folder, small_plan())
+    (folder / UNFINISHED).mkdir()
+    (folder / UNFINISHED / NAME).write_text("format = 1\n")
+    with pytest.raises(UserError, match=f"{UNFINISHED}/{NAME}"):
+        install(folder, small_plan())
+    install(folder, small_plan(), force=True)
+    assert content(tmp_path) == {f"v/{name}": text for name, text in expected(small_plan()).items()}
 
 
 @contextlib.contextmanager
