@@ -80,6 +80,13 @@ def test_bound_itself_passes_and_more_fails(check: Check) -> None:
     assert result.bounds[0].failures == 2
 
 
+def test_relative_errors_are_relative_to_what_is_expected(check: Check) -> None:
+    relative = ALL.replace("absolute", "relative")
+    result = check(relative, [(0, 2.0, 4.0), (1, 8.0, 4.0), (2, 5.0, 4.0)])
+    assert [f.identity.lane for f in result.failures] == [1]
+    assert result.bounds[0].measured == 1.0
+
+
 def test_expected_nan_fails(check: Check) -> None:
     result = check(ALL, [(0, 1, np.nan), (1, 1, 1)])
     assert [f.identity.lane for f in result.failures] == [0]
