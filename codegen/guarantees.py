@@ -16,10 +16,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from codegen.bounds import Bound
-from codegen.emit.dialect import Dialect
 from codegen.errors import UserError
 from codegen.ir.domains import number
 from codegen.library import Library
@@ -137,7 +136,19 @@ def exempt(library: Library) -> tuple[Exempt, ...]:
         raise UserError(f"shaderlib/{OPEN}: an entry has function, table, reason and cost: {e}") from None
 
 
-def table_of(dialect: Dialect) -> str:
+class Spoken(Protocol):
+    """What is asked of a dialect here: printing comes later than this."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def target(self) -> str:
+        """The target that runs it."""
+
+
+def table_of(dialect: Spoken) -> str:
     """The accuracy table that a dialect's text runs under."""
     return _TABLES.get(dialect.name, dialect.target)
 

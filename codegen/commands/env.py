@@ -8,7 +8,7 @@ import click
 from rich.console import Console
 
 from codegen.files import write_folder
-from codegen.maps.prepared import Settings, prepare
+from codegen.maps.prepared import Settings, prepare, unexpected
 
 
 @click.command("env")
@@ -41,6 +41,8 @@ def command(
         prepared = prepare(source, settings, lambda step: status.update(step))
         status.update(f"writing {output}")
         write_folder(output, prepared.files())
+    if unexpected(settings):
+        click.echo(f"note: {unexpected(settings)}", err=True)
     if console.is_terminal:
         count = len(prepared.manifest["levels"])
         console.print(f"{output}: {count} levels, {len(exponents)} prefiltered lobes", highlight=False)

@@ -77,6 +77,17 @@ def check(settings: Settings) -> None:
             raise UserError(f"--prefilter {exponent:g}: a lobe's exponent is in [0, 1e5]")
 
 
+def unexpected(settings: Settings) -> str:
+    """What env_* functions do not expect of a map, in one sentence; empty where they read it."""
+    whole = settings.size & (settings.size - 1) == 0
+    if settings.mapping == "dual-paraboloid" and whole and settings.border == paraboloid.BORDER:
+        return ""
+    return (
+        "the env_* functions will misread this map: they expect a dual-paraboloid map of a size that is a "
+        f"power of two, with a border of {number(paraboloid.BORDER)}"
+    )
+
+
 def prepare(path: Path, settings: Settings, progress: Callable[[str], None] = lambda step: None) -> Prepared:
     """A latitude-longitude map from a file, resampled, with its chain and its prefiltered lobes.
 

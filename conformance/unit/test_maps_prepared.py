@@ -117,3 +117,16 @@ def test_nothing_is_written_where_something_is_wrong(
     assert run(["env", str(sky), "-o", str(tmp_path / "no" / "out")]) == 2
     assert "does not exist" in capsys.readouterr().err
     assert not out.exists() and [path.name for path in tmp_path.iterdir()] == ["sky.exr"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "noted"),
+    [([], False), (["--size", "12"], True), (["--border", "1.5"], True), (["--mapping", "octahedral"], True)],
+)
+def test_maps_that_the_estimators_misread_are_noted(
+    sky: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], noted: bool
+) -> None:
+    assert run(["env", str(sky), "-o", str(tmp_path / "out"), "--size", "16", *arguments]) == 0
+    told = capsys.readouterr().err
+    assert ("note: the env_* functions will misread this map" in told) == noted
+    assert told.count("\n") == noted

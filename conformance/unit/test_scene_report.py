@@ -132,3 +132,10 @@ def test_the_page_says_it_too(data: dict[str, Any]) -> None:
     assert "80" in gains
     assert "20" in gains
     assert "0.25" in gains
+
+
+def test_a_narrowed_parameter_tells_its_own_interval_only(folder: Path) -> None:
+    text = (folder / "three_kinds_shade.glsl").read_text(encoding="utf-8")
+    (line,) = [x for x in text.splitlines() if "//   exponent" in x]
+    assert line.count("in [") == 1
+    assert line.endswith("in [16, 32]")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from codegen.backends import dialect
@@ -15,6 +16,9 @@ from codegen.scene.description.document import Scene
 from codegen.scene.general import General
 from codegen.scene.reduction.reduce import Reduced
 
+_INTERVAL = re.compile(r",? in \[[^\]]*\]")
+"""An interval as the comments of sources tell it."""
+
 
 def file_name(scene: Scene, target: str) -> str:
     """The name of a target's file: fox_at_noon_shade.glsl."""
@@ -25,7 +29,7 @@ def documented(scene: Scene, general: General, reduced: Reduced) -> ir.Function:
     """The final function with a comment that says what it is for and what it leaves out."""
     f = reduced.final.function
     source = scene.model.function
-    entries = {name: general.function.doc.entries.get(name, "") for name in (p.name for p in f.parameters)}
+    entries = {p.name: _told(p, general) for p in f.parameters}
     entries["returns"] = (
         f"radiance towards the viewer of {_lights(scene)}, in the unit of the lights' colours"
     )
@@ -49,6 +53,15 @@ def documented(scene: Scene, general: General, reduced: Reduced) -> ir.Function:
     narrowed = {p.name: p.domain or domains.get(p.name) for p in f.parameters}
     parameters = tuple(replace(p, domain=_readable(narrowed[p.name])) for p in f.parameters)
     return replace(f, parameters=parameters, doc=ir.Doc(summary, kept), kind="base", base=None)
+
+
+def _told(p: ir.Parameter, general: General) -> str:
+    """What the source says of a parameter; without its interval where the scene has a narrower one."""
+    text = general.function.doc.entries.get(p.name, "")
+    wide = general.slots[p.name].domain
+    if isinstance(p.domain, Interval) and isinstance(wide, Interval) and p.domain != wide:
+        return _INTERVAL.sub("", text)
+    return text
 
 
 def _readable(domain: Domain | None) -> Domain | None:
