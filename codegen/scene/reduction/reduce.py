@@ -28,7 +28,7 @@ from codegen.scene.reduction.knowledge import Knowledge, knowledge, model_ranges
 from codegen.scene.reduction.loosen import BUNDLES, SPLAT, loosened
 from codegen.scene.reduction.prices import Prices
 from codegen.scene.reduction.scales import gathered
-from codegen.scene.reduction.search import Found, Search
+from codegen.scene.reduction.search import Found, Search, Substitution
 from codegen.scene.reduction.sites import Path, plainly_named
 
 SMALLEST_GAIN = 0.005
@@ -328,13 +328,21 @@ def _variants(found: Found, choices: dict[Path, str], prices: Prices) -> Sequenc
             f"{s.new} for {s.old} in {s.caller}",
             "the cheapest whose domain covers the scene's ranges",
             s.together,
-            f"{s.saving:.3g} {prices.unit}, {prices.source}",
+            _saving(s, prices),
             s.refused,
             s.new,
         )
         for s in found.steps
         if s.path in choices
     ]
+
+
+def _saving(s: Substitution, prices: Prices) -> str:
+    """What a variant saves by its price, and what one call takes in operations."""
+    old, new = (
+        sum(operations(prices.library.function(name), prices.library).values()) for name in (s.old, s.new)
+    )
+    return f"{s.saving:.3g} {prices.unit}, {prices.source}; {old} -> {new} operations"
 
 
 def _fewer(before: Specialised, after: Specialised) -> str:

@@ -77,8 +77,14 @@ def _gains(data: dict[str, Any]) -> list[str]:
             f"| {t['target']} | {o['general']['all']} -> {o['exact']['all']} -> {o['final']['all']} "
             f"| {t['lines']['general']} -> {t['lines']['final']} | {counts} | {ns} | {ratio} | {build} |"
         )
+    differ = len({t["operations"]["final"]["all"] for t in data["targets"]}) > 1
+    dearer = (
+        "The search takes what saves most by the prices named below, which are recorded times where there "
+        "are any: a larger count stands for more operations that take less time on that driver."
+    )
     return [
         *rows,
+        *(["", dearer] if differ else []),
         "",
         "Operations: general, after exact passes, written; additions, multiplications, divisions, roots, "
         "exponentials, comparisons and choices, one each. SPIR-V: of GLSL for Vulkan by glslang, not "
