@@ -21,14 +21,13 @@ from codegen.strands.stages import ENTRIES, STATE, strand_block, strand_texts
 from codegen.strands.tfx import MOST_POINTS, read_strands
 from conformance.picture.backends import models
 from conformance.picture.fur_frame import light_arrays, view_projection
+from conformance.picture.fur_render import DEPTH_FROM, LARGEST_SIDE
 from conformance.picture.scene import Picture, Scene, read_scene
 from conformance.picture.shade import bind
 from conformance.picture.sky import lit_by_sky
 from conformance.picture.strand_settings import Hair
 from targets.raster import Draw
 from targets.raster import Scene as Drawing
-
-DEPTH_FROM = {"glsl": -1.0, "wgsl": 0.0}
 
 
 @dataclass(frozen=True)
@@ -86,6 +85,8 @@ def set_up_strands(library: Library, path: Path, **changes: Any) -> StrandStudio
     hair, picture = scene.hair, lit_by_sky(scene, replace(scene.picture, **changes))
     if picture.shadows:
         raise UserError(f"{path}: [render] shadows: strands cast no shadows; set it to false")
+    if max(picture.size) * picture.supersample > LARGEST_SIDE:
+        raise UserError(f"{path}: [render] size times supersample may be {LARGEST_SIDE} at most")
     bound = bind(scene, models(library))
     shading = strand_shading(library, bound.function)
     shading = replace(shading, lights=max(LEAST_LIGHTS, len(picture.lights)))

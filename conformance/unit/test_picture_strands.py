@@ -277,6 +277,7 @@ WRONG: dict[str, tuple[str, str, str]] = {
     "none": ("copies = 1", "copies = 0", "[strands] copies: must be a whole number from 1 to 64, not 0"),
     "shadows": ("shadows = false", "", "[render] shadows: strands cast no shadows; set it to false"),
     "both": ("[strands]", "[fur]\nlength = 1\nspacing = 1\n[strands]", "has a [fur] and a [strands] table"),
+    "size": ("supersample = 3", "supersample = 8\nsubdivide = 0", "size times supersample may be 8192"),
     "mesh": ("[render]\n", '[render]\nmesh = "bunny.obj"\n', '[render] has an unknown key "mesh"'),
     "model": ('"scheuermann"', '"brushed"', '[parameters] "base": brushed_shade has no such parameter'),
 }
@@ -290,11 +291,18 @@ def test_bad_strands_are_refused_in_one_sentence(
     path = written(tmp_path)
     text = path.read_text(encoding="utf-8")
     assert right in text
+    text = text.replace("[480, 480]", "[1200, 20]") if name == "size" else text
     path.write_text(text.replace(right, wrong, 1), encoding="utf-8")
     assert run(["render", str(path), "-o", str(tmp_path / "tuft.png")]) == 2
     said = capsys.readouterr().err.strip()
     assert sentence in said and "\n" not in said
     assert not (tmp_path / "tuft.png").exists()
+
+
+def test_copies_may_not_be_too_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("conformance.picture.strand_render.MOST_POINTS", 479)
+    with pytest.raises(UserError, match=r"\[strands\] copies: 1 make more than 479 points"):
+        set_up_strands(LIBRARY, written(tmp_path))
 
 
 def test_what_no_strand_has_and_targets_without_ribbons_are_refused(tmp_path: Path) -> None:
