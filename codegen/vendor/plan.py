@@ -145,5 +145,5 @@ def _part_header(d: Dialect, source_hash: str, prefix: str, files: Sequence[str]
     command = f"vair vendor --dialect {d.name} --per-function{named}"
     head = header(d, command, f"Source hash {source_hash}", CONVENTIONS)
     if files:
-        head += ["//", *wrap.comment(f"Needs {', '.join(files)}, in any order.", "// ", "//   ")]
+        head += ["//", *wrap.comment(f"Needs, in any order: {', '.join(files)}", "// ", "//   ")]
     return head

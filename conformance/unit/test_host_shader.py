@@ -89,7 +89,7 @@ def needed(files: Mapping[str, str], d: Dialect, names: list[str]) -> list[str]:
     chosen = [f"{folder_name(d)}/{name}.{d.extension}" for name in names]
     for name in list(chosen):
         header = files[name].split("\n\n", 1)[0]
-        listed = re.search(r"^// Needs (.*), in any order", header, re.MULTILINE | re.DOTALL)
+        listed = re.search(r"^// Needs, in any order: (.*)", header, re.MULTILINE | re.DOTALL)
         assert listed is None or not d.guard
         others = re.findall(rf"\w+\.{d.extension}", listed[1]) if listed else []
         chosen += [f"{folder_name(d)}/{other}" for other in others]
