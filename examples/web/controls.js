@@ -34,9 +34,12 @@ export class Controls {
     }
   }
 
-  /** Sets a parameter from outside; values beyond a slider's ends go to the end. */
-  set(path, value) {
-    this.shown.get(path)?.set(value);
+  /** Sets a parameter to the numbers of an address: left out if it cannot be them, at an end if they are too far. */
+  set(path, numbers) {
+    const { set, components } = this.shown.get(path);
+    if (numbers.length === components && numbers.every(Number.isFinite)) {
+      set(components === 1 ? numbers[0] : numbers);
+    }
   }
 
   /** The keys and values that differ from the scene's. */
@@ -79,7 +82,8 @@ export class Controls {
       input.setAttribute("aria-valuetext", output.textContent);
     };
     const set = (value) => {
-      const inside = Math.min(Math.max(value, entry.least), entry.most);
+      const near = entry.kind === "whole" ? Math.round(value) : value;
+      const inside = Math.min(Math.max(near, entry.least), entry.most);
       input.value = scale.toStep(inside);
       show(inside);
       this.values.set(path, inside);
@@ -89,7 +93,7 @@ export class Controls {
       show(value);
       this.keep(entry, value);
     });
-    this.shown.set(path, { row, input, set });
+    this.shown.set(path, { row, input, set, components: 1 });
     set(this.initial(path));
     this.values.delete(path);
     return row;
@@ -100,11 +104,12 @@ export class Controls {
     const row = rowOf(entry, input);
     const path = entry.sets[0];
     const set = (linear) => {
-      input.value = hexOf(linear);
-      this.values.set(path, linear);
+      const inside = linear.map((x) => Math.min(Math.max(x, 0), 1));
+      input.value = hexOf(inside);
+      this.values.set(path, inside);
     };
     input.addEventListener("input", () => this.keep(entry, linearOf(input.value)));
-    this.shown.set(path, { row, input, set });
+    this.shown.set(path, { row, input, set, components: 3 });
     set(this.initial(path));
     this.values.delete(path);
     return row;

@@ -13,7 +13,9 @@ import { at, showChoice, showComparison, showDetails, showMissing, showPicture, 
 import { Turning } from "./turning.js";
 
 const FORMAT = 1; // of web.json
-const MOST_PIXELS = 1024; // along a side of the picture
+const LEAST_PIXELS = 16; // along a side of the picture
+const MOST_PIXELS = 1024;
+const MOST_SIDE = 4; // samples along the side of a pixel
 const RETRY_AFTER = 400; // milliseconds between a lost context and the next one
 const FIXED = ["pixels", "side"]; // kept in the address as they were given
 
@@ -94,9 +96,8 @@ class Page {
     const initial = (path) => frame.initial(path);
     this.controls = new Controls(at("parameters"), this.plan, initial, () => this.changed());
     for (const { sets } of this.plan.parameters) {
-      const given = this.address.get(sets[0])?.split(",").map(Number);
-      if (given?.every(Number.isFinite)) {
-        this.controls.set(sets[0], given.length === 1 ? given[0] : given);
+      if (this.address.has(sets[0])) {
+        this.controls.set(sets[0], this.address.get(sets[0]).split(",").map(parseFloat));
       }
     }
     this.turning = new Turning(at("stage"), frame.kit.about.scene.camera, () => this.moved());
@@ -174,9 +175,15 @@ class Page {
     const { top, bottom } = this.frame.kit.about.scene.background;
     const density = Math.min(window.devicePixelRatio || 1, 2);
     const shown = Math.min(at("stage").clientWidth * density, MOST_PIXELS);
-    const pixels = Number(this.address.get("pixels")) || Math.max(Math.round(shown * share), 16);
-    const side = Number(this.address.get("side")) || (share === 1 && density < 1.5 ? 2 : 1);
+    const pixels = this.fixed("pixels", 2 * MOST_PIXELS) ?? Math.max(Math.round(shown * share), LEAST_PIXELS);
+    const side = this.fixed("side", MOST_SIDE) ?? (share === 1 && density < 1.5 ? 2 : 1);
     return { width: pixels, height: pixels, side, top, bottom };
+  }
+
+  /** A whole number that the address fixes; null where it fixes none that can be drawn. */
+  fixed(key, most) {
+    const given = Number(this.address.get(key));
+    return Number.isInteger(given) && given > 0 && given <= most ? given : null;
   }
 
   /** A renderer's context went away; told once of each. */

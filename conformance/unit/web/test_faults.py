@@ -3,6 +3,7 @@
 Plan. The page of a furry ball in Chromium without a window.
   lost      a context or a device that is taken away is set up again; one that is taken away again and again
             leaves the picture to the other backend
+  address   nonsense in it is left out
   without   no WebGPU, no device for it, no WebGL2, neither
   bad data  web.json, fur.json, buffers and stages that are missing, cut off or wrong
 """
@@ -32,6 +33,16 @@ LOSE = {
     "webgpu": "page.renderer.gpu.destroy()",
 }
 KIT = "shadings/fakefur_shade"
+NONSENSE = {
+    "backend": "direct3d",
+    "shading": "fakefur",
+    "skin": "0.5",
+    "layers": "many",
+    "coat_length": "",
+    "yaw": "left",
+    "side": "99",
+    "no": "such",
+}
 
 
 @pytest.mark.parametrize("backend", ["webgl2", pytest.param("webgpu", marks=pytest.mark.nightly)])
@@ -47,6 +58,16 @@ def test_a_lost_context_is_set_up_again(loud_page: Opened, backend: str) -> None
     page.settle(frames)
     assert page.text("#message") == ""
     assert_same(page.pixels(), before)
+
+
+@pytest.mark.nightly
+def test_nonsense_in_the_address_is_left_out(page: Opened) -> None:
+    page.load(**NONSENSE)
+    page.settle()
+    assert page.text("#message") == ""
+    assert page.run("return page.controls.differing()") == []
+    assert page.run("return page.turning.pose") == {"yaw": 0, "pitch": 0, "distance": 1}
+    assert "WebGPU on" in page.text("#status")
 
 
 def test_a_reader_is_told_when_nothing_helps(page: Opened) -> None:
