@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import pyopencl
 from PIL import Image
 
 HERE = Path(__file__).parent
@@ -20,6 +19,8 @@ SIDE = 256
 
 def draw(library: Path) -> npt.NDArray[np.uint8]:
     """Pixels (SIDE, SIDE, 4), top row first; `library` is the folder of vair-1.2.cl."""
+    import pyopencl
+
     device = pyopencl.get_platforms()[0].get_devices()[0]
     context = pyopencl.Context([device])
     queue = pyopencl.CommandQueue(context)

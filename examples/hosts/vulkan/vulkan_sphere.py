@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import wgpu
 from PIL import Image
 
 HERE = Path(__file__).parent
@@ -39,6 +38,8 @@ def compiled(stage: str, library: Path, folder: Path) -> bytes:
 
 def draw(vertex: bytes, fragment: bytes) -> npt.NDArray[np.uint8]:
     """Pixels (SIDE, SIDE, 4), top row first."""
+    import wgpu
+
     adapters = wgpu.gpu.enumerate_adapters_sync()
     adapter = next((found for found in adapters if found.info["backend_type"] == "Vulkan"), None)
     if adapter is None:

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import wgpu
 from PIL import Image
 
 HERE = Path(__file__).parent
@@ -22,6 +21,8 @@ FORMAT = "rgba8unorm"
 
 def draw(library: str) -> npt.NDArray[np.uint8]:
     """Pixels (SIDE, SIDE, 4), top row first."""
+    import wgpu
+
     device = wgpu.gpu.request_adapter_sync().request_device_sync()
     module = device.create_shader_module(code=library + (HERE / "sphere.wgsl").read_text(encoding="utf-8"))
     pipeline = device.create_render_pipeline(
