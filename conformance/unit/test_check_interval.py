@@ -83,6 +83,13 @@ def test_nothing_is_counted_beforehand() -> None:
     assert IntervalResult("wgsl") == IntervalResult("wgsl", 0, 0, 0, 0, 0, 0.0, "", {})
 
 
+@pytest.mark.parametrize(
+    ("lanes", "unguaranteed", "share"), [(0, 0, 0.0), (0, 1, 1.0), (1, 0, 0.0), (3, 1, 0.25)]
+)
+def test_share_of_unguaranteed_results(lanes: int, unguaranteed: int, share: float) -> None:
+    assert IntervalResult("wgsl", lanes=lanes, unguaranteed=unguaranteed).unguaranteed_share == share
+
+
 def test_results_inside_and_outside_are_counted(judge: Judge) -> None:
     result = judge(IDENTITY, {"x": [1, 2, 3, 4]}, [1, 2, 3.5, 5])
     assert counts(result) == (4, 2, 0, 2, 0)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.intervals import permitted
+from codegen.intervals import Cause, Permitted, permitted
 from codegen.library import load_library
 from conformance.check import ahead, prepared
 from conformance.check.ahead import prepared_ahead
@@ -62,6 +62,18 @@ def test_costly_function_is_followed_in_part() -> None:
         assert equal(found.low[lanes], wanted.low[lanes]) and equal(found.high[lanes], wanted.high[lanes])
         assert equal(found.guaranteed[lanes], wanted.guaranteed[lanes])
         assert all(found.cause(k) == wanted.cause(k) for k in np.flatnonzero(lanes))
+
+
+def test_narrower_intervals_bring_their_causes_along() -> None:
+    """Codes of the lanes that are replaced count on after those of all lanes; 0 stays bounded."""
+    first, second, third = (Cause("f", line, "/", "y", "the divisor may be 0") for line in (1, 2, 3))
+    ends = np.array([0.0, 1.0, 2.0, 3.0])
+    whole = Permitted(ends, ends + 4.0, np.array([1, 0, 1, 1], np.int16), (first,))
+    part = Permitted(ends[:3] + 1.0, ends[:3] + 2.0, np.array([0, 1, 2], np.int16), (second, third))
+    found: Any = prepared.narrowed(whole, np.array([0, 1, 2]), part)
+    assert found.low.tolist() == [1.0, 2.0, 3.0, 3.0]
+    assert found.high.tolist() == [2.0, 3.0, 4.0, 7.0]
+    assert [found.cause(k) for k in range(4)] == ["", str(second), str(third), str(first)]
 
 
 def test_costly_function_is_not_followed_on_all_lanes(monkeypatch: pytest.MonkeyPatch) -> None:
