@@ -86,11 +86,20 @@ def table(results: Results) -> str:
         for key in ("layers", "pixels"):
             grown = data[key]
             per = "shell" if key == "layers" else "million pixels"
-            cost = f"{grown['slope']:.3g} ms per {per} | {grown['intercept']:.3g} ms"
+            cost = f"{_digits(grown['slope'])} ms per {per} | {_digits(grown['intercept'])} ms"
             lines.append(f"| {data['device']['short']} | {cost} | {100 * grown['residual']:.1f} % |")
-    about = results[0]
-    lines += ["", f"{about['date']}, {about['machine']['cpu']}; {about['method']['clock']}."]
+    lines.append("")
+    for data in results:
+        load = max(data["load_average"]["before"][0], data["load_average"]["after"][0])
+        method = f"{data['method']['picture']}; {data['method']['rounds']} rounds; {data['method']['clock']}"
+        where = f"{data['date']}, {data['machine']['cpu']}, load average {load:.1f}"
+        lines.append(f"- {data['device']['short']}: {method}; {where}.")
     return "\n".join(lines)
+
+
+def _digits(x: float) -> str:
+    """Three significant digits, without an exponent."""
+    return f"{x:.0f}" if abs(x) >= 100.0 else f"{x:.3g}"
 
 
 def plate_table(data: dict[str, Any]) -> str:

@@ -27,7 +27,7 @@ def against_layers(library: Library, target: str, rounds: int, clock: Clock) -> 
         frames[str(layers)] = frame(replace(made, fur=coat), target)
     times = drawn_in_turns(frames, target, rounds, clock)
     shells = [layers - 1 for layers in LAYERS]
-    return described("shells", shells, [times[str(layers)] for layers in LAYERS], side=LAYERS_SIDE)
+    return described("shell", shells, [times[str(layers)] for layers in LAYERS], side=LAYERS_SIDE)
 
 
 def against_pixels(library: Library, target: str, rounds: int, clock: Clock) -> dict[str, Any]:
