@@ -10,23 +10,25 @@ from pathlib import Path, PurePosixPath
 
 from codegen.errors import UserError
 
+LIST = "written-by-vair.txt"
+"""Names every file of such a folder: only a folder that holds nothing else is replaced."""
+
 
 class NewFolder:
-    """A folder that takes the place of an old one, or of none, when it is whole; see `place`.
+    """A folder that takes the place of an old one, or of none, when it is whole; see `place`."""
 
-    marker  a file that an old folder must hold to be replaced, so that nothing else is ever removed
-    """
-
-    def __init__(self, folder: Path, marker: str) -> None:
-        """Raises UserError where the folder could not be put into its place."""
-        self.folder, self.marker = folder, marker
+    def __init__(self, folder: Path) -> None:
+        """Raises UserError where the folder could not be put into its place, or holds files of others."""
+        self.folder = folder
+        self._names: list[str] = []
         parent = folder.resolve().parent
         if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
             raise UserError(f'cannot write into "{folder}": it is no folder')
         if not parent.is_dir():
             raise UserError(f'cannot make "{folder}": the folder "{parent}" does not exist')
-        if folder.is_dir() and any(folder.iterdir()) and not (folder / marker).is_file():
-            raise UserError(f'"{folder}" holds other files: name an empty folder, or one with a {marker}')
+        foreign = sorted(_files(folder) - _listed(folder)) if folder.is_dir() else []
+        if foreign:
+            raise UserError(f'"{folder}" holds other files, as {foreign[0]}: name a new or an empty folder')
         try:
             self._aside = Path(tempfile.mkdtemp(dir=parent, prefix=".vair-"))
         except OSError as e:
@@ -47,12 +49,27 @@ class NewFolder:
                 path.write_bytes(data)
             except OSError as e:
                 raise UserError(f'cannot write "{self.folder / name}": {e.strerror}') from None
+            self._names.append(name)
 
     def place(self) -> None:
-        """Move the folder to its place; what was there before is gone."""
+        """Move the folder to its place; what Vair wrote there before is gone."""
+        self.add([(LIST, "".join(f"{name}\n" for name in sorted([*self._names, LIST])).encode())])
         try:
             if self.folder.exists():
                 os.replace(self.folder, self._aside / "old")
             os.replace(self._aside / "new", self.folder)
         except OSError as e:
             raise UserError(f'cannot write into "{self.folder}": {e.strerror}') from None
+
+
+def _files(folder: Path) -> set[str]:
+    """Everything in a folder that is none itself; links count as files."""
+    found = (p for p in folder.rglob("*") if p.is_symlink() or not p.is_dir())
+    return {p.relative_to(folder).as_posix() for p in found}
+
+
+def _listed(folder: Path) -> set[str]:
+    try:
+        return set((folder / LIST).read_text(encoding="utf-8").splitlines())
+    except (OSError, UnicodeDecodeError):
+        return set()

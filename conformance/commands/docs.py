@@ -13,7 +13,7 @@ from codegen.errors import UserError
 from codegen.kit.folder import NewFolder
 from codegen.library import load_library
 
-MARKER = "index.html"
+INDEX = "index.html"
 
 
 @click.command("docs")
@@ -29,7 +29,7 @@ def command(folder: Path, functions: tuple[str, ...]) -> None:
     names = list(dict.fromkeys(library.function(name).name for name in functions)) or list(library.documented)
     console = Console(stderr=True)
     with (
-        NewFolder(folder, MARKER) as new,
+        NewFolder(folder) as new,
         Progress(console=console, transient=True, disable=not sys.stderr.isatty()) as progress,
     ):
         task = progress.add_task("pages", total=len(names))
@@ -38,4 +38,4 @@ def command(folder: Path, functions: tuple[str, ...]) -> None:
             if path.startswith("functions/"):
                 progress.advance(task)
         new.place()
-    click.echo(f"wrote     {folder / MARKER}: {len(names)} functions")
+    click.echo(f"wrote     {folder / INDEX}: {len(names)} functions")

@@ -21,8 +21,6 @@ from codegen.version import VERSION
 from conformance.check.draws import SEED
 from conformance.foreign.make import FAMILY, LANES, prepared_vectors, vectors
 
-MARKER = "kit.json"
-
 
 @click.command("kit")
 @click.option("-o", "--output", "folder", type=click.Path(path_type=Path), required=True, help="The folder.")
@@ -52,7 +50,7 @@ def command(folder: Path, functions: tuple[str, ...], targets: tuple[str, ...], 
     about = {"kit": kit, "source": source, "seed": SEED, "vectors": identities}
     console = Console(stderr=True)
     with (
-        NewFolder(folder, MARKER) as new,
+        NewFolder(folder) as new,
         Progress(console=console, transient=True, disable=not sys.stderr.isatty()) as progress,
     ):
         for target in targets or TARGETS:
@@ -64,6 +62,6 @@ def command(folder: Path, functions: tuple[str, ...], targets: tuple[str, ...], 
             identities[name] = found.identity
             new.add([(f"vectors/{name}.json", as_json(found)), (f"vectors/{name}.npz", as_npz(found))])
             progress.advance(task)
-        new.add([(MARKER, (json.dumps(about, indent=1) + "\n").encode()), ("README.md", readme())])
+        new.add([("kit.json", (json.dumps(about, indent=1) + "\n").encode()), ("README.md", readme())])
         new.place()
     click.echo(f"wrote     {folder}: {len(names)} functions")

@@ -224,8 +224,17 @@ def test_wrong_usage(
     assert not list(tmp_path.iterdir())
 
 
-def test_other_folders_are_left_alone(tmp_path: Path, capsys: Capture) -> None:
-    (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
-    assert run(["kit", "-o", str(tmp_path), "--function", "pcg3d"]) == 2
-    assert "holds other files" in capsys.readouterr().err
-    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+def test_files_of_others_are_left_alone(tmp_path: Path, capsys: Capture) -> None:
+    """A kit replaces a kit, but no folder with anything else in it, whatever that is called."""
+    folder = tmp_path / "kit"
+    command = ["kit", "-o", str(folder), "--function", "pcg3d", "--lanes", "1"]
+    assert run(command) == 0
+    (folder / "kit.json").unlink()
+    assert run(command) == 0
+    assert (folder / "kit.json").is_file()
+    (folder / "vectors" / "notes.txt").write_text("mine", encoding="utf-8")
+    before = sorted(folder.rglob("*"))
+    assert run(command) == 2
+    assert "holds other files, as vectors/notes.txt" in capsys.readouterr().err
+    assert sorted(folder.rglob("*")) == before
+    assert [path.name for path in tmp_path.iterdir()] == ["kit"]
