@@ -34,7 +34,7 @@ export class Controls {
     }
   }
 
-  /** Sets a parameter to the numbers of an address, or an end of its range; numbers of another kind are left out. */
+  /** Sets a parameter to the numbers of an address, or to an end of its range; leaves out what is none. */
   set(path, numbers) {
     const { set, components } = this.shown.get(path);
     if (numbers.length === components && numbers.every(Number.isFinite)) {
