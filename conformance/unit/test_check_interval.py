@@ -166,6 +166,12 @@ def test_either_verdict_may_be_bad_alone(
         assert (failure.low, failure.high) == (LOW, HIGH)
 
 
+def test_what_misses_a_bound_comes_before_what_is_only_outside(judge: Judge) -> None:
+    """By however little, also where the bound is 0."""
+    result = judge(PRODUCT, {"x": [X, X]}, [4.0, LOW], bound=0.0, expected=lambda x: np.array([4.0, HIGH]))
+    assert [(f.identity.lane, f.failed) for f in result.failures] == [(1, (WITHIN,)), (0, (PERMITTED,))]
+
+
 def test_half_widths_from_the_middle(judge: Judge) -> None:
     result = judge(PRODUCT, {"x": [X, X, X]}, [LOW, HIGH + STEP, LOW - 2 * STEP])
     assert result.permitted is not None
