@@ -24,6 +24,7 @@ from conformance.bench.fur.frames import BY_HAND, FAKE_FUR, FIXED, FLOOR, GENERA
 from conformance.bench.fur.rounds import in_turns, line, net_of, ratio
 from conformance.picture.fur_render import FurStudio
 from conformance.picture.tone import eight_bit
+from conformance.unit.support.tolerances import tolerance
 from targets import TargetUnavailable, probe
 
 BOUNDS = tomllib.loads((FOLDER / "bounds.toml").read_text(encoding="utf-8"))
@@ -101,7 +102,7 @@ def test_lines_through_points() -> None:
     x = [3.0, 7.0, 15.0, 31.0, 63.0]
     straight = line(x, [20.0 + 1.5 * a for a in x])
     assert straight["slope"] == pytest.approx(1.5) and straight["intercept"] == pytest.approx(20.0)
-    assert straight["residual"] < 1e-12
+    assert straight["residual"] < tolerance("summed")
     # One point of three, 3 above the line through the others: its neighbours share a third each.
     bent = line([0.0, 1.0, 2.0], [0.0, 1.0 + 3.0, 2.0])
     assert bent["slope"] == pytest.approx(1.0) and bent["residual"] == pytest.approx(2.0 / 4.0)

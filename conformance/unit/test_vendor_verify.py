@@ -28,6 +28,7 @@ from codegen.vendor.lock import NAME, Lock, Promise, file_hash
 from codegen.vendor.options import Options
 from codegen.vendor.plan import Plan, plan_functions
 from codegen.vendor.state import UNFINISHED
+from conformance.unit.support.tolerances import tolerance
 from conformance.unit.support.vendored import content, small_plan, vair
 
 GLSL = Options(("glsl/430",), functions=("sin_angle", "fur_hair_area"))
@@ -126,7 +127,7 @@ def test_values_are_compared_by_execution(
     (entry,) = data["functions"]
     assert (entry["function"], entry["kind"], entry["dialects"]) == ("sin_angle", "code", ["glsl/430"])
     found = entry["differences"]["glsl/430"]
-    assert found["absolute"] == pytest.approx(0.5, abs=1e-6)  # the whole sine is 1 at most
+    assert found["absolute"] == pytest.approx(0.5, abs=tolerance("halved"))  # the whole sine is 1 at most
     assert found["relative"] == 0.5
     assert found["points"] > 1000 and found["driver"]
     assert re.fullmatch(r"a=[0-9a-f ]{26};b=[0-9a-f ]{26}", found["at"])
@@ -282,7 +283,8 @@ def test_a_scene_is_vendored_and_compared(tmp_path: Path, capsys: pytest.Capture
     file.write_text(file.read_text().replace("    return ", "    return 0.5 * "))
     status, _, data = verified(folder, capsys)
     assert status == 1
-    assert data["functions"][0]["differences"]["glsl/430"]["relative"] == pytest.approx(0.5, rel=1e-3)
+    relative = data["functions"][0]["differences"]["glsl/430"]["relative"]
+    assert relative == pytest.approx(0.5, rel=tolerance("halved"))
     (tmp_path / "scenes" / "own.toml").unlink()
     status, _, err = vair(capsys, "verify", folder)
     assert status == 2 and "own.toml: there is no such file" in err
