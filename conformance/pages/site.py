@@ -19,11 +19,11 @@ GUIDES = ("vendor", "generate", "conformance", "adding", "ci")
 """The guides, in the order of the index."""
 ERRATA = Path(__file__).parents[1] / "printed"
 NOTES = {
-    "vendor": "for an engine: files, no toolchain, later upgrades",
-    "generate": "choose functions or describe a scene",
-    "conformance": "check drivers and other people's backends",
-    "adding": "a function, a variant, a built-in, a target",
-    "ci": "in your own continuous integration, with and without a GPU",
+    "vendor": "no toolchain, compile errors, later upgrades",
+    "generate": "functions by name, by error, or by a scene file",
+    "conformance": "verdicts, replays, shards, and kits for other engines",
+    "adding": "recipes that tests execute",
+    "ci": "software drivers and a GPU runner, JUnit and JSON",
 }
 
 
