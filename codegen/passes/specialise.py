@@ -133,7 +133,7 @@ def specialise(
         fact = given if isinstance(given, Fact) else Fact(*given)
         _learn(proofs, subject, values, fact)
     proofs.check_facts()
-    values.simplify_by(_rules(proofs, frozenset(kinds)))
+    values.simplify_by(exact_rules(proofs, frozenset(kinds)))
     inliner = Inliner(
         library,
         values,
@@ -145,7 +145,7 @@ def specialise(
     flow = pruned(inliner.flow(function, arguments))
     assert flow.result is not None
     left = used_parameters(values, [*roots(flow.items), *leaves(flow.result)])
-    names = _parameter_names(left, function)
+    names = parameter_names(left, function)
     body = statements(values, flow, function.returns, names)
     dropped = [path for path in values.parameters if path not in left]
     for path in dropped:
@@ -170,7 +170,7 @@ def specialise(
     )
 
 
-def _rules(proofs: Ranges, kinds: frozenset[str]) -> tuple[Rule, ...]:
+def exact_rules(proofs: Ranges, kinds: frozenset[str]) -> tuple[Rule, ...]:
     """All rules in the order in which they are tried."""
     last: tuple[Rule, ...] = (cancellation(),) if "real" in kinds else ()
     return (components, fold_constants, identities(proofs, kinds), zero_components, guards(proofs), *last)
@@ -203,7 +203,7 @@ def checked(library: Library, variants: Mapping[str, str]) -> Mapping[str, str]:
     return variants
 
 
-def _parameter_names(paths: Collection[str], function: ir.Function) -> dict[str, str]:
+def parameter_names(paths: Collection[str], function: ir.Function) -> dict[str, str]:
     """A name for each path: its last part where that is unambiguous, else the whole path."""
     last = [path.rpartition(".")[2] for path in paths]
     whole = {p.name for p in function.parameters}

@@ -18,7 +18,8 @@ from codegen.ir.domains import Interval, Unit
 from codegen.ir.types import F32, Array, Vector
 from codegen.library import Library
 from codegen.passes.analysis.operations import operations
-from codegen.passes.specialise import Specialised, specialise
+from codegen.passes.probe import operations_left
+from codegen.passes.specialise import Specialised
 from codegen.scene import environment
 from codegen.scene.description.document import Scene
 from codegen.scene.description.lights import UNROLLED
@@ -276,13 +277,10 @@ class Builder:
     def remaining(self, library: Library, reduced: Reduced) -> list[Remaining]:
         """What each parameter costs that is left: operations that go if it is constant, dearest first."""
         f = reduced.final.function
-        extended = library.with_functions([f])
-        found = []
-        for p in f.parameters:
-            value = _simple_value(p)
-            if value is not None:
-                made = specialise(extended, f.name, {p.name: value}, new_name="scene_probe", unroll=UNROLLED)
-                found.append(Remaining(p.name, sum(operations(made.function).values())))
+        simple = {p.name: value for p in f.parameters if (value := _simple_value(p)) is not None}
+        asked = [{name: value} for name, value in simple.items()]
+        left = operations_left(library.with_functions([f]), f.name, asked, UNROLLED)
+        found = [Remaining(name, count) for name, count in zip(simple, left, strict=True)]
         return sorted(found, key=lambda r: r.operations)
 
 

@@ -1,0 +1,58 @@
+"""How many operations a function has left where parameters are constant: one question after the other.
+
+All questions share their values, so that what does not depend on what is asked is simplified once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from codegen.ir import nodes as ir
+from codegen.library import Library
+from codegen.passes.analysis.operations import operations
+from codegen.passes.analysis.ranges import Ranges
+from codegen.passes.inline import Inliner
+from codegen.passes.placement.dead import pruned, used_parameters
+from codegen.passes.placement.schedule import statements
+from codegen.passes.specialise import EXACT_KINDS, exact_rules, parameter_names, specialise
+from codegen.passes.ssa.flow import roots
+from codegen.passes.ssa.values import Values, leaves
+from codegen.passes.subject import Subject
+
+
+def operations_left(
+    library: Library, name: str, questions: Iterable[Mapping[str, Any]], unroll: int
+) -> list[int]:
+    """The operations that `specialise` leaves for each set of constants, path -> value."""
+    shared = _Shared(library, library.function(name), unroll)
+    return [shared.operations(constants) for constants in ({}, *questions)][1:]
+
+
+class _Shared:
+    def __init__(self, library: Library, function: ir.Function, unroll: int) -> None:
+        self.library, self.function, self.unroll = library, function, unroll
+        self.values = self.fresh()
+
+    def fresh(self) -> Values:
+        """Values of which nothing is known yet."""
+        values = Values(function=self.function.name, line=self.function.place.line)
+        values.simplify_by(exact_rules(Ranges(values), frozenset(EXACT_KINDS)))
+        return values
+
+    def operations(self, constants: Mapping[str, Any]) -> int:
+        """The operations that are left for these constants."""
+        values, function = self.values, self.function
+        before = dict(values.indices)
+        arguments = Subject(function, dict(constants), {}, {}).arguments(values)
+        flow = pruned(Inliner(self.library, values, (), self.unroll).flow(function, arguments))
+        if any(values.indices[index] != ends for index, ends in before.items()):
+            # A loop has the variable of another: what is known of that one does not hold for it.
+            self.values = self.fresh()
+            made = specialise(self.library, function.name, constants, new_name="probe", unroll=self.unroll)
+            return sum(operations(made.function).values())
+        assert flow.result is not None
+        left = used_parameters(values, [*roots(flow.items), *leaves(flow.result)])
+        body = statements(values, flow, function.returns, parameter_names(left, function))
+        return sum(operations(replace(function, body=body)).values())
