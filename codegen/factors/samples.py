@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 import zipfile
 import zlib
 from dataclasses import dataclass
@@ -71,8 +72,12 @@ def read_samples(path: Path) -> Samples:
     try:
         if not path.read_text(encoding="utf-8").strip():
             raise UserError(f"{path.name}: not a table of numbers: it is empty")
-        table: Any = np.genfromtxt(path, delimiter=",", names=True, deletechars="", dtype=np.float64, ndmin=1)
-    except (ValueError, OSError) as e:  # an undecodable text is a ValueError
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # of a table without rows
+            table: Any = np.genfromtxt(
+                path, delimiter=",", names=True, deletechars="", dtype=np.float64, ndmin=1
+            )
+    except (ValueError, OSError, IndexError, UserWarning) as e:  # undecodable: a ValueError
         raise UserError(f"{path.name}: not a table of numbers: {str(e).splitlines()[0]}") from None
     names = table.dtype.names or ()
     values = ("r", "g", "b") if "r" in names else ("value",)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import random
+import shutil
 import sys
 import tempfile
 import time
@@ -69,7 +70,7 @@ def main(name: str, runs: int, seconds: int, seed: int, replay: str | None, blin
         elif atheris is None:
             _draw(one, over, seed)
         else:
-            _follow(atheris, one, over, seed)
+            _follow(atheris, one, over, seed, folder)
 
 
 def _draw(one: Callable[[bytes], None], over: Callable[[], bool], seed: int) -> None:
@@ -79,16 +80,28 @@ def _draw(one: Callable[[bytes], None], over: Callable[[], bool], seed: int) -> 
         one(drawn.randbytes(drawn.randrange(LONGEST)))
 
 
-def _follow(atheris: Any, one: Callable[[bytes], None], over: Callable[[], bool], seed: int) -> None:
-    """Inputs that follow coverage. libFuzzer never returns, so the process ends here."""
+def _follow(
+    atheris: Any, one: Callable[[bytes], None], over: Callable[[], bool], seed: int, folder: str
+) -> None:
+    """Inputs that follow coverage. libFuzzer never returns, so the process ends here.
+
+    folder  where it leaves its own copy of a finding; what is printed replays it
+    """
 
     def counted(data: bytes) -> None:
         one(data)
         if over():
             sys.stdout.flush()
+            shutil.rmtree(folder)
             os._exit(0)
 
-    options = [f"-seed={seed}", f"-max_len={LONGEST}", "-len_control=0", "-verbosity=0"]
+    options = [
+        f"-seed={seed}",
+        f"-max_len={LONGEST}",
+        "-len_control=0",
+        "-verbosity=0",
+        f"-artifact_prefix={folder}/",
+    ]
     options += ["-timeout=0", "-rss_limit_mb=4096"]
     atheris.Setup([sys.argv[0], *options], counted)
     atheris.Fuzz()

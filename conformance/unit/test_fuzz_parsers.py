@@ -68,6 +68,7 @@ FINDINGS = {
     "key with an escape of terminals": ("scene", '"\\u001b[2J" = 1', 'unknown table or key "\\x1b[2J"'),
     "long value": ("waterloo", f"x\n0\n{'y' * 9000}\n", "the scale is three numbers"),
     "long column": ("samples", f"l.{'x' * 9000}\n1\n", 'the column "l.x" is missing'),
+    "header that is a lone sign of comments": ("samples", "#", "not a table of numbers"),
     "function as a number": (
         "results",
         '[{"function": 1, "identity": "x", "words": ""}]',
