@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import typing
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +13,9 @@ from codegen.documents import read_json
 from codegen.errors import UserError
 from conformance.check.result import FunctionResult
 from conformance.check.shard import Shard
+
+PLAIN: dict[Any, Any] = {str: str, int: int, float: (int, float), bool: bool}
+"""Type of a field -> what JSON holds there."""
 
 
 @dataclass(frozen=True)
@@ -44,12 +49,26 @@ def merge(paths: Iterable[Path]) -> Merged:
         for entry in data["results"]:
             try:
                 result = FunctionResult.from_data(entry)
+                check_types(result)
             except (AttributeError, KeyError, TypeError, ValueError) as e:
                 raise UserError(f"{path}: a result lacks or misspells {e}") from None
             key = (result.function, result.backend, result.driver)
             if key not in found or found[key].accepted:
                 found[key] = result
     return Merged(list(found.values()), list(skipped), lacking(shards))
+
+
+def check_types(value: Any) -> None:
+    """Raise TypeError where a field of a dataclass, or of those in it, holds no text or number as it says."""
+    hints = typing.get_type_hints(type(value))
+    for field in dataclasses.fields(value):
+        held, hint = getattr(value, field.name), hints[field.name]
+        kind = PLAIN.get(hint)
+        if kind is not None and not (isinstance(held, kind) and isinstance(held, bool) == (hint is bool)):
+            raise TypeError(f"{field.name}: {held!r} is no {hint.__name__}")
+        for part in held if isinstance(held, list | tuple) else [held]:
+            if dataclasses.is_dataclass(part):
+                check_types(part)
 
 
 def lacking(shards: set[Shard]) -> list[str]:

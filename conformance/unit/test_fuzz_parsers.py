@@ -92,6 +92,15 @@ def test_a_result_with_a_number_for_a_text_is_none(key: str, tmp_path: Path) -> 
         merge([tmp_path / "r.json"])
 
 
+@pytest.mark.parametrize(("key", "value"), [("function", []), ("lanes", "many"), ("seconds", True)])
+def test_a_result_with_a_field_of_another_type_is_refused(key: str, value: Any, tmp_path: Path) -> None:
+    whole = json.loads(PARSERS["results"]().seeds[0])
+    whole["results"][0][key] = value
+    (tmp_path / "r.json").write_text(json.dumps(whole))
+    with pytest.raises(UserError, match=f"a result lacks or misspells {key}: "):
+        merge([tmp_path / "r.json"])
+
+
 def test_sentences_are_one_printable_line_of_some_length() -> None:
     assert str(UserError("a\nb\x1b\u2028c")) == "a\\nb\\x1b\\u2028c"
     assert len(str(UserError("x" * 10**5))) <= LONGEST + len(" ...")
