@@ -7,6 +7,7 @@ Plan. Hand-made values, and functions of one line.
   known lanes    of an integer that is an interval elsewhere stay exact
   bits of zero   either word, and every word where something else than a number may be
   anything       has infinite ends, also through absolute values and normalised vectors
+  choices        bring the cause of the side that may be chosen; `and` and `or` are told apart
   many ways      a lane with more ways than are followed keeps the hull
 """
 
@@ -22,7 +23,7 @@ import pytest
 from codegen.intervals import DEFAULT_TABLES, TABLES, arithmetic, elementary, load_table, permitted, whole
 from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
-from codegen.intervals.values import Range, Whole
+from codegen.intervals.values import Range, Truth, Whole, choose
 from conformance.unit.support.sources import library_of
 from targets import TARGETS
 
@@ -122,6 +123,30 @@ def test_lane_with_too_many_ways_keeps_the_hull(tmp_path: Path) -> None:
     assert widths["once", 4000] < 0.5 and widths["once", 20000] < 0.5
     assert widths["twice", 4000] < 0.5
     assert widths["twice", 20000] == 1.0
+
+
+def test_chosen_side_brings_its_cause() -> None:
+    """The first side's where it may be chosen, the second's where only that may; none of the other's."""
+    condition = Truth(np.array([True, False, True]), np.array([False, True, True]))
+    zero = np.zeros(3)
+    first, second = (Range(zero, zero + 1.0, np.full(3, code, np.int16)) for code in (5, 7))
+    bounded = Range(zero, zero + 1.0)
+    for a, b, codes in (
+        (first, second, [5, 7, 5]),
+        (first, bounded, [5, 0, 5]),
+        (bounded, second, [0, 7, 7]),
+    ):
+        found = choose(condition, a, b)
+        assert isinstance(found, Range) and found.cause is not None
+        assert found.cause.tolist() == codes
+
+
+@pytest.mark.parametrize(("op", "expected"), [("and", [1.0, 2.0, 2.0, 2.0]), ("or", [1.0, 1.0, 1.0, 2.0])])
+def test_truth_of_two_comparisons(op: str, expected: list[float], tmp_path: Path) -> None:
+    text = f"def probe(x: X, y: X) -> f32:\n    return 1.0 if x > 0.0 {op} y > 0.0 else 2.0\n"
+    inputs = {"x": np.array([3, 3, -3, -3], np.float32), "y": np.array([3, -3, 3, -3], np.float32)}
+    found: Any = permitted(library_of(tmp_path, text), "probe", inputs, "wgsl")
+    assert found.low.tolist() == found.high.tolist() == expected
 
 
 def test_every_target_has_its_table() -> None:
