@@ -29,6 +29,7 @@ from codegen.passes.rules.guards import guards
 from codegen.passes.rules.identities import identities
 from codegen.passes.rules.powers import whole_exponents
 from codegen.passes.rules.scalars import components
+from codegen.passes.rules.sine_powers import whole_sine_exponents
 from codegen.passes.rules.sums import cancellation
 from codegen.passes.ssa.flow import roots
 from codegen.passes.ssa.values import Rule, Step, Values, constant_components, leaves
@@ -139,7 +140,7 @@ def specialise(
         values,
         keep,
         unroll,
-        (whole_exponents(powers),) if powers else (),
+        (whole_exponents(powers), whole_sine_exponents(powers)) if powers else (),
         checked(library, variants),
     )
     flow = pruned(inliner.flow(function, arguments))

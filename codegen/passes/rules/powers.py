@@ -97,7 +97,7 @@ def whole_exponents(
         power = float(exponent.value)
         if power != int(power) or not 1 <= power <= largest:
             return None
-        made = _power(values, row.base(values, of, int(power)), int(power))
+        made = power_of(values, row.base(values, of, int(power)), int(power))
         values.note(
             NAME,
             f"{function.name}({values.show(of)}, {power:g}) -> {multiplications(int(power))} multiplications",
@@ -113,7 +113,8 @@ def multiplications(power: int) -> int:
     return power.bit_length() - 1 + power.bit_count() - 1
 
 
-def _power(values: Values, base: ir.Expr, power: int) -> ir.Expr:
+def power_of(values: Values, base: ir.Expr, power: int) -> ir.Expr:
+    """The base to a whole power, at least 1, by products of its squares."""
     made: ir.Expr | None = None
     square, reached = base, 1
     values.hint(base, "base", FIELD)

@@ -16,6 +16,7 @@ from codegen.ir.types import VEC3
 from codegen.library import Library
 from codegen.passes.analysis.operations import operations
 from codegen.passes.rules.powers import LARGEST, ROWS
+from codegen.passes.rules.sine_powers import FUNCTION as SINE_POWER
 from codegen.passes.specialise import Specialised, specialise
 from codegen.passes.ssa.text import show
 from codegen.scene.description.document import Scene
@@ -31,6 +32,8 @@ from codegen.scene.reduction.scales import gathered
 from codegen.scene.reduction.search import Found, Search, Substitution
 from codegen.scene.reduction.sites import Path, plainly_named
 
+SETTLED = frozenset((*ROWS, SINE_POWER))
+"""What whole exponents turn into multiplications, so that no variant is looked for."""
 SMALLEST_GAIN = 0.005
 """Share of the price that a form has to save to be worth its error."""
 MOST_DROPS = 4
@@ -134,7 +137,7 @@ class Reducer:
         current, choices = exact, {}
         if budget > 0.0:
             powers = self.powers(exact, budget, changes)
-            found = self.search.find(prices, budget, frozenset(ROWS) if powers else frozenset())
+            found = self.search.find(prices, budget, SETTLED if powers else frozenset())
             choices = self.needed(found.choices, powers)
             changes += _variants(found, choices, prices)
             current = self.specialised(choices, powers)
