@@ -97,8 +97,11 @@ def write(step: Step, folder: Path) -> None:
     if step.file:
         path = folder / step.file.removeprefix("+")
         path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("a" if step.file.startswith("+") else "w", encoding="utf-8") as file:
-            file.write(step.text)
+        added = step.file.startswith("+")
+        # What is added to a module stands two lines below what is there, as its formatter wants it.
+        space = "\n\n" if added and path.suffix == ".py" else ""
+        with path.open("a" if added else "w", encoding="utf-8") as file:
+            file.write(space + step.text)
 
 
 def follow(name: str, folder: Path) -> None:

@@ -15,11 +15,11 @@ from codegen.library import load_library
 from conformance.check import engine
 from conformance.check.engine import Backend
 from conformance.executor import Here, Job, Processes, Result
+from conformance.executor.state import State
 from conformance.sweep import judge, record, task
 from conformance.sweep.plan import PIECE, critical, pieces
 from conformance.sweep.positions import Positions, order_of, positions, sweepable
 from conformance.sweep.source import hash_of, source_of
-from conformance.executor.state import State
 from conformance.sweep.sweep import sweep
 from conformance.sweep.task import BLOCK, CHUNK, TASK, TOGETHER, run, run_together
 
