@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import I32
+from codegen.ir.types import BOOL
 from codegen.library import Library
 from conformance.fuzz.choices import Choice
 from conformance.metamorphic.relation import Changed, SourceRelation
@@ -29,10 +29,10 @@ def _rewritten(body: tuple[ir.Stmt, ...], change: Callable[[ir.For], list[ir.Stm
 
 
 def _split(function: ir.Function, library: Library, choice: Choice) -> Changed | None:
-    """for i in range(a, b) becomes the same over [a, m) and over [m, b)."""
+    """for i in range(a, b) becomes the same over [a, m) and over [m, b); a limit needs a loop from 0."""
 
     def cut(s: ir.For) -> list[ir.Stmt]:
-        if s.stop - s.start < 2:
+        if s.stop - s.start < 2 or s.limit is not None:
             return [s]
         middle = choice.randint(s.start + 1, s.stop - 1)
         return [replace(s, stop=middle), replace(s, start=middle)]
@@ -42,7 +42,10 @@ def _split(function: ir.Function, library: Library, choice: Choice) -> Changed |
 
 
 def _unrolled(function: ir.Function, library: Library, choice: Choice) -> Changed | None:
-    """Each turn becomes a block of its own: a loop of one turn, whose index is written as a number."""
+    """Each turn becomes a block of its own: a loop of one turn, whose index is written as a number.
+
+    Turns of a loop with a limit are guarded by it.
+    """
 
     def unroll(s: ir.For) -> list[ir.Stmt]:
         if s.stop - s.start > LONGEST:
@@ -50,9 +53,12 @@ def _unrolled(function: ir.Function, library: Library, choice: Choice) -> Change
 
         def turn(k: int) -> ir.Stmt:
             def numbered(e: ir.Expr) -> ir.Expr:
-                return ir.Const(I32, k) if isinstance(e, ir.Var) and e.name == s.name else e
+                return ir.Const(s.index_type, k) if isinstance(e, ir.Var) and e.name == s.name else e
 
-            return replace(s, start=0, stop=1, body=ir.map_body(s.body, numbered))
+            once = replace(s, start=0, stop=1, limit=None, body=ir.map_body(s.body, numbered))
+            if s.limit is None:
+                return once
+            return ir.If(ir.Binary(BOOL, "<", ir.Const(s.index_type, k), s.limit), (once,), ())
 
         return [turn(k) for k in range(s.start, s.stop)]
 
