@@ -45,7 +45,9 @@ def checked(name: str, folder: Path) -> dict[str, Any]:
     return data
 
 
-@pytest.mark.parametrize(("name", "is_poor"), [("swiftshader", True), ("lavapipe", False)])
+@pytest.mark.parametrize(
+    ("name", "is_poor"), [("swiftshader", True), pytest.param("lavapipe", False, marks=pytest.mark.nightly)]
+)
 def test_sine_is_permitted_and_its_error_is_told(name: str, is_poor: bool, tmp_path: Path) -> None:
     result = checked(name, tmp_path)
     assert result["verdicts"]["permitted"] == "permitted"

@@ -130,6 +130,7 @@ print(json.dumps(told))
 """
 
 
+@pytest.mark.nightly
 def test_trials_tell_harmless_from_deadly(tmp_path: Path) -> None:
     test = tmp_path / "test_identity.py"
     test.write_text(
@@ -168,6 +169,7 @@ def test_confidence_of_a_sample() -> None:
     assert confidence(15, 30) == pytest.approx(HALF_OF_THIRTY, abs=FOUR_DIGITS)
 
 
+@pytest.mark.nightly
 def test_every_excuse_excuses_something() -> None:
     every = [m for g in groups().values() for s in g.subjects for m in mutants_of(g, s)]
     idle = [e for e in excuses() if not any(e.covers(m) for m in every)]

@@ -39,7 +39,7 @@ from targets.drivers import (
     probe_driver,
 )
 
-EVERY_RUN = ("llvmpipe-fragment", "softpipe-fragment", "swiftshader", "rusticl")
+EVERY_RUN = ("llvmpipe-fragment", "swiftshader")
 """Drivers that answer in every run; the targets' own tests use the others, or these are like them."""
 GOOD = {"title": "a driver", "target": "glsl", "install": "apt", "match": {"device": "llvmpipe"}}
 LLVMPIPE = Device(

@@ -35,7 +35,9 @@ def ran(*command: str, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
     return done
 
 
-@pytest.mark.parametrize("host", PROGRAMS)
+@pytest.mark.parametrize(
+    "host", [pytest.param(h, marks=pytest.mark.nightly) if h == "vulkan" else h for h in PROGRAMS]
+)
 def test_a_program_in_python_draws_the_sphere(host: str, tmp_path: Path) -> None:
     target, tools = PROGRAMS[host]
     answer = probe(target)

@@ -222,6 +222,7 @@ def test_comments_are_no_part_of_a_source() -> None:
     assert source_of(LIBRARY, NAME, "numpy") != source_of(LIBRARY, NAME, "glsl")
 
 
+@pytest.mark.nightly
 def test_processes_sweep_as_one_process_does() -> None:
     where = {NAME: SWEPT[NAME]}
     jobs = [Job(TASK, NAME, "numpy", k * 5000, k * 5000 + 5000) for k in range(4)]

@@ -189,7 +189,7 @@ FAULTS: dict[str, tuple[tuple[str, Callable[[bytes], bytes] | None], str]] = {
 }
 
 
-DAILY = ("kit-without-passes", "mesh-cut-off", "stage-wrong")
+DAILY = ("stage-wrong",)
 
 
 @pytest.mark.parametrize(
