@@ -16,7 +16,7 @@ from codegen.files import write_text
 from codegen.fur.stages import DIALECTS
 from codegen.library import load_library
 from conformance.bench.fur.fragments import fragments
-from conformance.bench.fur.frames import FAKE_FUR, studio
+from conformance.bench.fur.frames import FAKE_FUR, SHELL_LIGHTING, studio
 from conformance.bench.fur.measure import measured
 from conformance.bench.fur.page import FIGURE, RESULTS, draw_figure, read_results, update_readme
 from conformance.bench.fur.rounds import THREADS
@@ -35,7 +35,8 @@ def main(targets: tuple[str, ...], side: int, rounds: int, record: bool) -> None
     """Time and error of a frame of fur, and its cost against shells and pixels."""
     os.environ.update(THREADS)
     console, library, begin = Console(width=110), load_library(), time.monotonic()
-    found = fragments(studio(library, FAKE_FUR, FRAGMENTS_SIDE))
+    scenes = FAKE_FUR, SHELL_LIGHTING
+    found = {name: fragments(studio(library, name, FRAGMENTS_SIDE)) for name in scenes}
     kept: list[dict[str, Any]] = []
     for target in targets or tuple(DIALECTS):
         try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from typing import Any
 
@@ -35,11 +35,11 @@ Say = Callable[[str], None]
 
 
 def measured(
-    library: Library, target: str, found: Fragments, side: int, rounds: int, say: Say
+    library: Library, target: str, found: Mapping[str, Fragments], side: int, rounds: int, say: Say
 ) -> dict[str, Any]:
     """Times, ratios and errors of both scenes, and how the cost grows.
 
-    found  fragments of the furry bunny
+    found  fragments of each scene
     side   of the picture in pixels
     """
     runtime: Any = open_runtime(target)
@@ -51,9 +51,8 @@ def measured(
         say(f"{target}: {name}")
         made = frames(studio(library, name, side), target)
         scenes[name] = scene_data(made, target, turns, clock)
-        if name == FAKE_FUR:
-            errors_of = {key: errors(one, target, found) for key, one in made.items() if key != FLOOR}
-            scenes[name]["error"] = errors_of
+        shaded = {key: one for key, one in made.items() if key != FLOOR}
+        scenes[name]["error"] = {key: errors(one, target, found[name]) for key, one in shaded.items()}
     say(f"{target}: shells and pixels")
     few = max(rounds // 2, 1)
     result = {
