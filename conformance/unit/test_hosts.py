@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from conformance.picture.tolerances import tolerance
-from conformance.unit.sphere import off, pixels, sphere
+from conformance.unit.support.sphere import off, pixels, sphere
 from targets import TargetUnavailable, probe
 from targets.packages import find_tool
 

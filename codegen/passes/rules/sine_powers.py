@@ -2,7 +2,7 @@
 
 before   shell_sine_power(n, l, 1.0)          shell_sine_power(n, h, 24.0)
 after    sqrt(s)                              s2 = s * s; s4 = s2 * s2; s8 = s4 * s4; s8 * s4
-         with s = |(n - l) x (n + l)|^2 / 4, or max(1 - (n.h)^2, 0.0003) for exponents of 2 and more
+         with s = |(n - l) x (n + l)|^2 / 4, or max(1 - (n.h)^2, 0.0048) for exponents of 2 and more
 
 Not exact, so only by request, like codegen.passes.rules.powers. The root of 1 - c^2 would err by 5e-4 along
 the hair; of higher powers the same rounding is below a millionth.

@@ -13,7 +13,7 @@ from PIL import Image
 from selenium.webdriver.support.ui import WebDriverWait
 
 from conformance.picture.tolerances import tolerance
-from conformance.unit.sphere import off
+from conformance.unit.support.sphere import off
 from conformance.unit.web.opened import PATIENCE
 from conformance.web.browser import missing, open_browser, served
 
