@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -26,7 +27,7 @@ ABOUT = "about"
 MOST_LANES = 10_000_000
 """Of one family; more than that is a damaged file."""
 DAMAGED = (ValueError, OSError, EOFError, KeyError, NotImplementedError, MemoryError, zipfile.BadZipFile)
-HEX_DIGITS = 8
+HEXADECIMAL = re.compile(r"[0-9a-fA-F]{8}")
 NOT_FINITE = {"nan": np.nan, "inf": np.inf, "-inf": -np.inf}
 
 
@@ -185,7 +186,7 @@ def _from_array(where: str, type_: str, values: npt.NDArray[Any]) -> Words:
 def _word(where: str, type_: str, value: Any) -> int:
     """One value of a JSON file: eight hexadecimal digits, or a number."""
     try:
-        if isinstance(value, str) and len(value) == HEX_DIGITS:
+        if isinstance(value, str) and HEXADECIMAL.fullmatch(value):
             return int(value, 16)
         if type_ == "f32" and value in NOT_FINITE:
             value = NOT_FINITE[value]

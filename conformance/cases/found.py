@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
@@ -24,6 +25,7 @@ FOLDER = Path(__file__).parent / "worst"
 COLUMNS = ("function", "target", "driver", "measure", "domain", "error", "inputs")
 COMMENT = "# Worst inputs found so far: lower bounds of the error; written by python -m conformance.search\n"
 DTYPES = {"f32": np.float32, "i32": np.int32, "u32": np.uint32, "bool": np.uint32}
+_WORD = re.compile(r"[0-9a-fA-F]{8}")
 
 Row = dict[str, str]
 
@@ -63,12 +65,19 @@ def inputs_of(function: Any, texts: Iterable[str]) -> dict[str, Any]:
         if set(given) != {".".join(leaf.path) for leaf in found}:
             raise ValueError(f"{function.name} has other parameters than {text}")
         for leaf in found:
-            bits = [int(word, 16) for word in given[".".join(leaf.path)].split()]
+            where = f"{function.name}: {'.'.join(leaf.path)}"
+            bits = [_word(where, word) for word in given[".".join(leaf.path)].split()]
             if len(bits) != size_of(leaf):
-                raise ValueError(f"{function.name}: {'.'.join(leaf.path)} has not {len(bits)} components")
+                raise ValueError(f"{where} has not {len(bits)} components")
             columns[leaf.path].append(bits)
     values = {leaf.path: _column(leaf, np.array(columns[leaf.path], np.uint32)) for leaf in found}
     return nested(values)
+
+
+def _word(where: str, text: str) -> int:
+    if not _WORD.fullmatch(text):
+        raise ValueError(f"{where}: {text} is no word of 8 hexadecimal digits")
+    return int(text, 16)
 
 
 def size_of(leaf: Leaf) -> int:

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from codegen.errors import UserError
+
+MOST_LANES = 10_000_000
+"""Of one draw; an identity that names more is damaged."""
+_NUMBER = re.compile(r"[0-9]{1,18}")
 
 
 @dataclass(frozen=True)
@@ -26,12 +31,21 @@ class Identity:
         """The identity that a failure printed; raises UserError for anything else."""
         parts = text.split("/")
         try:
-            function, target, family, count, seed, lane = parts
-            identity = Identity(function, target, family, int(count), int(seed), int(lane))
+            function, target, family = parts[:3]
+            count, seed, lane = map(_number, parts[3:])
+            identity = Identity(function, target, family, count, seed, lane)
         except ValueError:
             raise UserError(
                 f'"{text}" is no replay identity; a failure prints function/target/family/count/seed/lane'
             ) from None
         if not 0 <= identity.lane < identity.count:
             raise UserError(f'replay identity "{text}" names lane {identity.lane} of {identity.count}')
+        if identity.count > MOST_LANES:
+            raise UserError(f'replay identity "{text}" names a draw of {identity.count} lanes')
         return identity
+
+
+def _number(text: str) -> int:
+    if not _NUMBER.fullmatch(text):
+        raise ValueError("digits alone")
+    return int(text)

@@ -8,6 +8,7 @@ Plan.
   damage     the same bytes give the same file; trees are written as they are read
 """
 
+import copy
 import json
 import math
 import random
@@ -59,6 +60,18 @@ def test_a_seed_is_taken(named: tuple[str, Parser], box: Sandbox) -> None:
     assert "" in said
 
 
+def _record(**given: str) -> str:
+    """A failure as `vair check --json` writes it, with other fields."""
+    return json.dumps([PARSERS["results"]().trees[1][0] | given])
+
+
+def _computed(word: str) -> str:
+    """Results of a kit with this word."""
+    tree = copy.deepcopy(PARSERS["kit"]().trees[0])
+    tree["functions"]["sin_angle"]["rows"] = [[word]]
+    return json.dumps(tree)
+
+
 DEEP = "[" * 5000
 FINDINGS = {
     "value nested too deeply": ("scene", f"a = {DEEP}", "is nested too deeply"),
@@ -75,6 +88,27 @@ FINDINGS = {
         "function, identity and words are texts",
     ),
     "JSON nested too deeply": ("results", DEEP, "is nested too deeply"),
+    "word of more than 32 bits": (
+        "results",
+        _record(words="hair_length=13f800000;radius_base=3f800000;radius_tip=3f000000"),
+        "hair_length: 13f800000 is no word of 8 hexadecimal digits",
+    ),
+    "negative word": (
+        "results",
+        _record(words="hair_length=-f800000;radius_base=3f800000;radius_tip=3f000000"),
+        "hair_length: -f800000 is no word of 8 hexadecimal digits",
+    ),
+    "identity of a draw that no memory holds": (
+        "results",
+        _record(identity="fur_hair_area/numpy/uniform/1000000000000/0/3", words=""),
+        "names a draw of 1000000000000 lanes",
+    ),
+    "identity with a negative seed": (
+        "results",
+        _record(identity="fur_hair_area/numpy/uniform/16/-1/3", words=""),
+        "is no replay identity",
+    ),
+    "negative word of a result": ("kit", _computed("-f800000"), 'holds "-f800000"'),
 }
 
 
