@@ -23,7 +23,7 @@ def command(scene: Path, output: Path, fixed: bool) -> None:
     fur.json, which describes passes with their states, attributes, uniforms and what was found in the mesh.
     """
     try:
-        from conformance.picture.fur_render import set_up_fur
+        from conformance.picture.fur.studio import set_up_fur
     except ModuleNotFoundError as error:
         raise UserError(f"fur needs the package {error.name}; install vair[render]") from error
     console = Console(stderr=True)

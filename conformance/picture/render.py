@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -12,16 +14,21 @@ import numpy.typing as npt
 from codegen.errors import UserError
 from codegen.library import Library
 from conformance.picture.backends import models, open_backend
-from conformance.picture.fur_picture import render_fur, render_strands
+from conformance.picture.fur.draw import draw_fur
+from conformance.picture.fur.studio import FurStudio, set_up_fur
 from conformance.picture.image import write_png
 from conformance.picture.mesh import Mesh, read_mesh
+from conformance.picture.rasterise import Singles, develop
 from conformance.picture.scene import Picture, Scene, read_scene
 from conformance.picture.shade import Backend, Models, Shading, bind, shade
 from conformance.picture.sky import lit_by_sky
+from conformance.picture.strands.draw import draw_strands
+from conformance.picture.strands.studio import StrandStudio, set_up_strands
 from conformance.picture.tone import eight_bit, gradient, resolve
 from conformance.picture.visibility import Visibility, see
 
 Doubles = npt.NDArray[np.float64]
+Made = TypeVar("Made", FurStudio, StrandStudio)
 
 
 @dataclass(frozen=True)
@@ -36,12 +43,10 @@ class Studio:
     @cached_property
     def seen(self) -> Visibility:
         """The visibility buffer, the same for all backends."""
-        width, height = self.picture.size
-        side = self.picture.supersample
         return see(
             self.mesh,
             self.picture.camera,
-            (width * side, height * side),
+            self.picture.samples,
             self.picture.brush,
             [light.direction for light in self.picture.lights],
             self.picture.shadows,
@@ -83,10 +88,19 @@ def render(library: Library, scene: Path, target: str | None, output: Path) -> t
     """
     found = read_scene(scene)
     if found.fur is not None:
-        return render_fur(library, scene, target, output)
+        return _drawn(set_up_fur(library, scene), draw_fur, target, output)
     if found.hair is not None:
-        return render_strands(library, scene, target, output)
+        return _drawn(set_up_strands(library, scene), draw_strands, target, output)
     studio = set_up(scene, models(library))
     backend = open_backend(target or studio.scene.targets[0], library)
     write_png(output, eight_bit(studio.develop(studio.shade(backend))))
     return backend.name, backend.driver
+
+
+def _drawn(
+    studio: Made, draw: Callable[[Made, str], tuple[Singles, str]], target: str | None, output: Path
+) -> tuple[str, str]:
+    chosen = target or studio.scene.targets[0]
+    samples, driver = draw(studio, chosen)
+    write_png(output, eight_bit(develop(studio.picture, samples)))
+    return chosen, driver

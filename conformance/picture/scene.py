@@ -17,10 +17,12 @@ from codegen.errors import UserError
 from codegen.scene.description.document import BUDGETS
 from codegen.scene.description.tables import Table, is_number, read_tables, show
 from conformance.picture.brush import Brush
-from conformance.picture.fur_settings import Fur, read_fur
-from conformance.picture.strand_settings import Hair, read_hair
+from conformance.picture.fur.settings import Fur, read_fur
+from conformance.picture.strands.settings import Hair, read_hair
 from conformance.picture.visibility import Camera
 
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SCENES = EXAMPLES / "scenes"
 MOST_LIGHTS = 64
 """Lights of one kind."""
 BRIGHTEST = 1.0e4
@@ -84,6 +86,12 @@ class Picture:
     brush: Brush
     lights: tuple[Light, ...]
     sky: Sky | None = None
+
+    @property
+    def samples(self) -> tuple[int, int]:
+        """Samples (width, height): supersample along each side of a pixel."""
+        width, height = self.size
+        return width * self.supersample, height * self.supersample
 
 
 @dataclass(frozen=True)

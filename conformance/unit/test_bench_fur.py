@@ -22,7 +22,7 @@ from conformance.bench.fur.by_hand import FOLDER, by_hand, floor
 from conformance.bench.fur.fragments import Fragments, errors, fragments
 from conformance.bench.fur.frames import BY_HAND, FAKE_FUR, FIXED, FLOOR, GENERAL, TYPED_IN, frames, studio
 from conformance.bench.fur.rounds import in_turns, line, net_of, ratio
-from conformance.picture.fur_render import FurStudio
+from conformance.picture.fur.studio import FurStudio
 from conformance.picture.tone import eight_bit
 from conformance.unit.support.tolerances import tolerance
 from targets import TargetUnavailable, probe

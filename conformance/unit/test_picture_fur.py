@@ -24,8 +24,8 @@ from codegen.cli import run
 from codegen.errors import UserError
 from codegen.fur.stages import DIALECTS
 from codegen.library import load_library
-from conformance.picture.fur_frame import view_projection
-from conformance.picture.fur_render import FurStudio, open_drawing, set_up_fur
+from conformance.picture.fur.studio import FurStudio, open_fur, set_up_fur
+from conformance.picture.rasterise import view_projection
 from conformance.picture.scene import read_scene
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import steps_apart
@@ -40,7 +40,7 @@ Samples = np.ndarray[Any, np.dtype[np.float32]]
 
 def samples(studio: FurStudio, target: str) -> Samples:
     """Premultiplied colour and coverage (height, width, 4)."""
-    drawing = open_drawing(studio, target)
+    drawing = open_fur(studio, target)
     try:
         return drawing.draw(studio.block.pack(studio.values(target)))
     finally:
@@ -69,7 +69,7 @@ def test_opengl_and_webgpu_draw_the_same_fur(name: str) -> None:
 def test_the_dialects_of_glsl_draw_the_same_fur(ball: FurStudio) -> None:
     pictures = []
     for dialect in DIALECTS["glsl"]:
-        drawing = open_drawing(ball, "glsl", dialect)
+        drawing = open_fur(ball, "glsl", dialect)
         pictures.append(drawing.draw(ball.block.pack(ball.values("glsl"))))
         drawing.release()
     assert len(pictures) == 2 and pictures[0].max() > 0.1
@@ -265,7 +265,7 @@ def test_targets_without_stages_and_scenes_without_fur_are_refused(
     assert run(["render", "scene.toml", "--target", "opncl", "-o", "ball.png"]) == 2
     assert 'unknown target "opncl"; did you mean "opencl"?' in capsys.readouterr().err
     with pytest.raises(UserError, match="target opencl draws no fur; glsl and wgsl do"):
-        open_drawing(set_up_fur(load_library(), tmp_path / "scene.toml"), "opencl")
+        open_fur(set_up_fur(load_library(), tmp_path / "scene.toml"), "opencl")
     assert run(["fur", str(SCENES / "haired-bunny.toml"), "-o", "kit"]) == 2
     assert "has no [fur] table, which a picture of fur needs" in capsys.readouterr().err
     assert not (tmp_path / "kit").exists() and not (tmp_path / "ball.png").exists()

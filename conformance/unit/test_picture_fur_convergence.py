@@ -7,9 +7,9 @@ import pytest
 from PIL import Image
 
 from codegen.library import load_library
-from conformance.picture.fur_convergence import converge, figure, main
-from conformance.picture.fur_plate import SCENES
-from conformance.picture.fur_render import set_up_fur
+from conformance.picture.fur.convergence import converge, figure, main
+from conformance.picture.fur.studio import set_up_fur
+from conformance.picture.scene import SCENES
 from conformance.picture.tolerances import tolerance
 from targets import TargetUnavailable, probe
 
@@ -34,7 +34,7 @@ def test_a_scene_without_fur_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     output = tmp_path / "figure.png"
-    said = ["fur_convergence", "-o", str(output), "--scene", str(SCENES / "haired-bunny.toml")]
+    said = ["convergence", "-o", str(output), "--scene", str(SCENES / "haired-bunny.toml")]
     monkeypatch.setattr("sys.argv", said)
     assert main() == 2
     assert "has no [fur] table" in capsys.readouterr().err and not output.exists()

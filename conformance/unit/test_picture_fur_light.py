@@ -25,11 +25,11 @@ from codegen.fur.layout import FIN_VERTEX, FUR_VERTEX, MOST_LIGHTS
 from codegen.fur.stages import stage_texts
 from codegen.library import load_library
 from codegen.maps.image import exr
+from conformance.bench.fur.sky import errors
 from conformance.picture.backends import models, open_backend
-from conformance.picture.fur_picture import draw_fur
-from conformance.picture.fur_render import FurStudio, set_up_fur
-from conformance.picture.fur_shadow import HALF_ANGLE, disc, with_shadows
-from conformance.picture.fur_sky import errors
+from conformance.picture.fur.draw import draw_fur
+from conformance.picture.fur.shadow import HALF_ANGLE, disc, with_shadows
+from conformance.picture.fur.studio import FurStudio, set_up_fur
 from conformance.picture.render import set_up
 from conformance.picture.scene import Light
 from conformance.picture.tolerances import tolerance

@@ -16,9 +16,9 @@ import pytest
 
 from codegen.library import load_library
 from conformance.picture.backends import open_backend
-from conformance.picture.fur_march import Hits, March, _first, _turns
-from conformance.picture.fur_picture import draw_fur
-from conformance.picture.fur_render import FurStudio, set_up_fur
+from conformance.picture.fur.draw import draw_fur
+from conformance.picture.fur.march import Hits, March, _first, _turns
+from conformance.picture.fur.studio import FurStudio, set_up_fur
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import steps_apart
 from targets import TargetUnavailable, probe

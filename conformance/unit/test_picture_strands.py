@@ -30,7 +30,8 @@ from codegen.library import load_library
 from codegen.strands.ribbons import copied, ribbons
 from codegen.strands.stages import strand_texts
 from codegen.strands.tfx import HEADER, read_strands, tfx
-from conformance.picture.strand_render import StrandStudio, draw_strands, open_strands, set_up_strands
+from conformance.picture.strands.draw import draw_strands
+from conformance.picture.strands.studio import StrandStudio, open_strands, set_up_strands
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import steps_apart
 from targets import TargetUnavailable, probe
@@ -304,7 +305,7 @@ def test_bad_strands_are_refused_in_one_sentence(
 
 
 def test_copies_may_not_be_too_many(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("conformance.picture.strand_render.MOST_POINTS", 479)
+    monkeypatch.setattr("conformance.picture.strands.studio.MOST_POINTS", 479)
     with pytest.raises(UserError, match=r"\[strands\] copies: 1 make more than 479 points"):
         set_up_strands(LIBRARY, written(tmp_path))
 

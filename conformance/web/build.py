@@ -14,7 +14,7 @@ from codegen.fur.kit import BUFFERS
 from codegen.fur.shading import fur_shading, member_name
 from codegen.library import Library, default_root
 from codegen.version import VERSION
-from conformance.picture.fur_render import FurStudio, set_up_fur
+from conformance.picture.fur.studio import FurStudio, set_up_fur
 from conformance.web.choices import Choices, choices
 from conformance.web.figures import figures, misprint, records
 

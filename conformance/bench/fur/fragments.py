@@ -17,10 +17,11 @@ import numpy.typing as npt
 
 from codegen.fur.coat import quads
 from codegen.scene.description.document import HALF_STEP
-from conformance.bench.fur.frames import Frame, open_scene
+from conformance.bench.fur.frames import Frame
 from conformance.picture.backends import open_backend
-from conformance.picture.fur_march import March
-from conformance.picture.fur_render import FurStudio
+from conformance.picture.fur.march import March
+from conformance.picture.fur.studio import FurStudio
+from conformance.picture.rasterise import open_scene
 from targets.raster import Draw
 
 FOLDER = Path(__file__).parent / "handwritten"
@@ -93,7 +94,7 @@ def drawn(frame: Frame, target: str, found: Fragments) -> npt.NDArray[np.float64
     if target == "wgsl":
         texts, stages = {"fur.wgsl": f"{texts['fur.wgsl']}\n{probe}"}, ("probe_vertex", "shell_fragment")
     draw = Draw(*stages, vertices.reshape(-1), quads(len(number)), 1, STATE)
-    scene = open_scene(target, texts, [draw], (side, side), bits=32)
+    scene = open_scene(target, texts, "fur.wgsl", [draw], (side, side), bits=32)
     picture = scene.draw(frame.block).reshape(-1, 4)[: len(number)].astype(np.float64)
     scene.release()
     shown: npt.NDArray[np.float64] = np.where(picture[:, 3:] > 0.0, picture[:, :3], np.nan)

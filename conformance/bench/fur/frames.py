@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
-from codegen.backends import open_runtime
-from codegen.fur.stages import DIALECTS, STAGES, stage_texts
+from codegen.fur.stages import DIALECTS, stage_texts
 from codegen.library import Library
 from conformance.bench.fur.by_hand import by_hand, floor
-from conformance.picture.fur_render import FurStudio, set_up_fur
-from targets.raster import Draw, Scene
+from conformance.picture.fur.studio import FurStudio, set_up_fur, stage_names
+from conformance.picture.rasterise import open_scene
+from conformance.picture.scene import SCENES
+from targets.raster import Scene
 
-SCENES = Path(__file__).resolve().parents[3] / "examples" / "scenes"
 FAKE_FUR, SHELL_LIGHTING = "furry-bunny", "shell-lit-bunny"
 GENERAL, FIXED, BY_HAND, TYPED_IN, FLOOR = (
     "vair",
@@ -40,30 +39,8 @@ class Frame:
 
     def open(self, target: str) -> Scene:
         """The frame on the target's device, ready to be drawn as often as wanted."""
-        return open_scene(
-            target, self.texts, self.studio.draws(stage_names(target, self.texts)), self.studio.drawn_size
-        )
-
-
-def stage_names(target: str, texts: Mapping[str, str]) -> dict[str, tuple[str, str]]:
-    """Vertex and fragment stage by pass: texts, or entry points of a WGSL module."""
-    if target == "wgsl":
-        return {stage: (f"{stage}_vertex", f"{stage}_fragment") for stage in STAGES}
-    return {stage: (texts[f"{stage}.vert"], texts[f"{stage}.frag"]) for stage in STAGES}
-
-
-def open_scene(
-    target: str, texts: Mapping[str, str], draws: list[Draw], size: tuple[int, int], bits: int = 16
-) -> Scene:
-    """Draw calls on the target's device; `bits` of the picture's floats."""
-    runtime: Any = open_runtime(target)
-    if target == "wgsl":
-        from targets.wgsl.raster import WgslScene
-
-        return WgslScene(runtime, texts["fur.wgsl"], draws, size, bits)
-    from targets.glsl.raster import GlslScene
-
-    return GlslScene(runtime, draws, size, bits)
+        draws = self.studio.draws(stage_names(target, self.texts))
+        return open_scene(target, self.texts, "fur.wgsl", draws, self.studio.picture.samples)
 
 
 def studio(library: Library, scene: str, side: int, **changes: Any) -> FurStudio:

@@ -9,7 +9,7 @@ import pytest
 
 from codegen.files import write_folder
 from codegen.library import load_library
-from conformance.picture.fur_render import FurStudio, set_up_fur
+from conformance.picture.fur.studio import FurStudio, set_up_fur
 from conformance.unit.web.furry_ball import write_furry_ball
 from conformance.unit.web.opened import Opened
 from conformance.web.browser import lacking, missing, open_browser, served, view

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from conformance.picture.fur_picture import draw_fur
-from conformance.picture.fur_render import FurStudio, develop
+from conformance.picture.fur.draw import draw_fur
+from conformance.picture.fur.studio import FurStudio
+from conformance.picture.rasterise import develop
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import eight_bit
 from conformance.unit.web.opened import Pixels

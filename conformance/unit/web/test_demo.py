@@ -27,7 +27,7 @@ import pytest
 from codegen.cli import run
 from codegen.errors import UserError
 from codegen.fur.shading import fur_shading
-from conformance.picture.fur_render import FurStudio
+from conformance.picture.fur.studio import FurStudio
 from conformance.web.build import check_scene
 from conformance.web.choices import choices
 from conformance.web.serve import HOST, POLL, address, open_server

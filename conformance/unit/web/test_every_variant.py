@@ -18,7 +18,7 @@ import pytest
 
 from codegen.files import write_folder
 from codegen.library import load_library
-from conformance.picture.fur_render import FurStudio
+from conformance.picture.fur.studio import FurStudio
 from conformance.unit.web.opened import Opened
 from conformance.unit.web.pictures import assert_same, python_picture
 from conformance.web.browser import served, view
@@ -33,7 +33,7 @@ import sys
 from pathlib import Path
 import numpy as np
 from codegen.library import load_library
-from conformance.picture.fur_render import set_up_fur
+from conformance.picture.fur.studio import set_up_fur
 from conformance.unit.web.pictures import python_picture
 from conformance.web.build import shaded_by
 studio = set_up_fur(load_library(), Path(sys.argv[1]))

@@ -21,7 +21,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from conformance.picture.fur_render import FurStudio
+from conformance.picture.fur.studio import FurStudio
 from conformance.picture.scene import Light
 from conformance.picture.tolerances import tolerance
 from conformance.unit.web.opened import Opened

@@ -1,4 +1,4 @@
-"""How shells converge to a coat as they grow in number: `python -m conformance.picture.fur_convergence`.
+"""How shells converge to a coat as they grow in number: `python -m conformance.picture.fur.convergence`.
 
 Rays meet the shells of a scene, shaded by a target that draws nothing; a rasteriser draws the same shells.
 Both are compared with the rays' picture of many layers. Hairs keep their opacity (`shell_alpha_resample`), so
@@ -23,9 +23,10 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from codegen.errors import UserError
 from codegen.files import write_bytes
 from codegen.library import load_library
-from conformance.picture.fur_picture import draw_fur
-from conformance.picture.fur_plate import SCENES
-from conformance.picture.fur_render import FurStudio, develop, set_up_fur
+from conformance.picture.fur.draw import draw_fur
+from conformance.picture.fur.studio import FurStudio, set_up_fur
+from conformance.picture.rasterise import develop
+from conformance.picture.scene import SCENES
 from conformance.picture.tone import eight_bit, steps_apart
 
 Doubles = npt.NDArray[np.float64]
@@ -130,7 +131,7 @@ def main() -> int:
         found = converge(studio, (options.rays, options.drawn), LAYERS, REFERENCE)
         write_bytes(options.output, figure(found, REFERENCE, SHOWN))
     except UserError as error:
-        print(f"fur_convergence: {error}", file=sys.stderr)
+        print(f"convergence: {error}", file=sys.stderr)
         return 2
     for one in found.series:
         steps = ", ".join(f"{count}: {mean:.2f}" for count, mean in one.steps.items())

@@ -1,4 +1,4 @@
-"""A scene with a [fur] table made ready, and drawn by OpenGL or WebGPU with the generated stages."""
+"""A scene with a [fur] table made ready, and opened on OpenGL or WebGPU with the generated stages."""
 
 from __future__ import annotations
 
@@ -7,10 +7,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from codegen.backends import open_runtime
 from codegen.errors import UserError
 from codegen.fur.budget import cheaper_shading
 from codegen.fur.coat import FurMesh, grow
@@ -18,24 +14,20 @@ from codegen.fur.kit import kit_files
 from codegen.fur.layout import LEAST_LIGHTS, Block, uniform_block
 from codegen.fur.radiance import BODY
 from codegen.fur.shading import FurShading, fixed_shading, folded_into, fur_shading
-from codegen.fur.stages import DIALECTS, stage_texts
+from codegen.fur.stages import DIALECTS, STAGES, stage_texts
 from codegen.fur.states import pass_states
 from codegen.library import Library
 from conformance.picture.backends import models
-from conformance.picture.fur_frame import ball, frame_values, view_projection
-from conformance.picture.fur_settings import Fur
-from conformance.picture.fur_shadow import with_shadows
+from conformance.picture.fur.frame import frame_values
+from conformance.picture.fur.settings import Fur
+from conformance.picture.fur.shadow import with_shadows
+from conformance.picture.rasterise import ball, clip_space, open_scene, refuse_too_large
 from conformance.picture.scene import Picture, Scene, read_scene
 from conformance.picture.shade import bind
 from conformance.picture.sky import lit_by_sky
-from conformance.picture.tone import gradient
 from targets.raster import Draw
 from targets.raster import Scene as Drawing
 
-Doubles = npt.NDArray[np.float64]
-
-LARGEST_SIDE = 8192
-DEPTH_FROM = {"glsl": -1.0, "wgsl": 0.0}
 INTERFACES = {"opengl": "glsl", "webgpu": "wgsl"}
 
 
@@ -57,21 +49,12 @@ class FurStudio:
         material = ((slot.name, slot.type) for slot in self.shading.material)
         return uniform_block(material, self.shading.lights)
 
-    @property
-    def drawn_size(self) -> tuple[int, int]:
-        """Samples (width, height)."""
-        width, height = self.picture.size
-        return width * self.picture.supersample, height * self.picture.supersample
-
     def values(self, target: str) -> dict[str, Any]:
         """Values by member of the uniform block."""
-        width, height = self.picture.size
-        bounds = ball(self.mesh, self.fur.length)
-        camera = self.picture.camera
-        matrix = view_projection(camera, width / height, bounds, DEPTH_FROM[target])
+        picture, bounds = self.picture, ball(self.mesh.vertices, self.fur.length)
         material = {slot.path: self.material[slot.path] for slot in self.shading.material}
-        frame = frame_values(self.fur, self.mesh, camera, self.picture.lights, material)
-        return {"view_projection": matrix.T.reshape(-1), **frame}
+        frame = frame_values(self.fur, self.mesh, picture.camera, picture.lights, material)
+        return {"view_projection": clip_space(picture, bounds, target), **frame}
 
     def fixed(self) -> FurStudio:
         """The same with what the scene states folded into the lighting, as cheap as its budget permits."""
@@ -133,8 +116,8 @@ def set_up_fur(library: Library, path: Path, *, pictured: bool = True, **changes
         missing = "[render]" if scene.picture is None else "[fur]"
         raise UserError(f"{path}: has no {missing} table, which a picture of fur needs")
     picture = replace(scene.picture, **changes)
-    if pictured and max(picture.size) * picture.supersample > LARGEST_SIDE:
-        raise UserError(f"{path}: [render] size times supersample may be {LARGEST_SIDE} at most")
+    if pictured:
+        refuse_too_large(path, picture)
     bound = bind(scene, models(library))
     picture = lit_by_sky(scene, picture)
     shading = lit_shading(fur_shading(library, bound.function), picture, scene.fur)
@@ -152,7 +135,7 @@ def lit_shading(shading: FurShading, picture: Picture, fur: Fur) -> FurShading:
     )
 
 
-def open_drawing(studio: FurStudio, target: str, dialect: str | None = None) -> Drawing:
+def open_fur(studio: FurStudio, target: str, dialect: str | None = None) -> Drawing:
     """The scene's draw calls on a target's device.
 
     dialect  of the stages; the target's first one in which fur is written if None
@@ -161,23 +144,12 @@ def open_drawing(studio: FurStudio, target: str, dialect: str | None = None) -> 
     if target not in DIALECTS:
         raise UserError(f"target {target} draws no fur; {' and '.join(DIALECTS)} do")
     texts = stage_texts(studio.library, studio.shading, target, dialect or DIALECTS[target][0])
-    runtime = open_runtime(target)
-    if target == "glsl":
-        from targets.glsl.raster import GlslScene
-
-        passes = {name: (texts[f"{name}.vert"], texts[f"{name}.frag"]) for name in ("base", "shell", "fin")}
-        return GlslScene(runtime, studio.draws(passes), studio.drawn_size)
-    from targets.wgsl.raster import WgslScene
-
-    entries = {name: (f"{name}_vertex", f"{name}_fragment") for name in ("base", "shell", "fin")}
-    return WgslScene(runtime, texts["fur.wgsl"], studio.draws(entries), studio.drawn_size)
+    draws = studio.draws(stage_names(target, texts))
+    return open_scene(target, texts, "fur.wgsl", draws, studio.picture.samples)
 
 
-def develop(picture: Picture, samples: npt.NDArray[np.float32]) -> Doubles:
-    """Samples (height s, width s, 4), premultiplied, averaged into pixels over the background."""
-    width, height = picture.size
-    side = picture.supersample
-    mean = samples.astype(np.float64).reshape(height, side, width, side, 4).mean(axis=(1, 3))
-    background = gradient(picture.size, picture.top, picture.bottom)
-    light: Doubles = mean[..., :3] + (1.0 - mean[..., 3:]) * background
-    return light
+def stage_names(target: str, texts: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+    """Vertex and fragment stage by pass: texts, or entry points of a WGSL module."""
+    if target == "wgsl":
+        return {stage: (f"{stage}_vertex", f"{stage}_fragment") for stage in STAGES}
+    return {stage: (texts[f"{stage}.vert"], texts[f"{stage}.frag"]) for stage in STAGES}

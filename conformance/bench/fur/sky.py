@@ -1,4 +1,4 @@
-"""Ways of lighting a coat by an environment map: error and cost; `python -m conformance.picture.fur_sky`.
+"""Ways of lighting a coat by an environment map: error and cost; `python -m conformance.bench.fur.sky`.
 
 An error is the root mean square of what hairs send to the camera under the map alone, over that of the sum
 over the texels of the map, in float64. The cost is the processor time of a frame with its listed lights and
@@ -25,11 +25,11 @@ from codegen.evaluate import evaluate
 from codegen.library import load_library
 from codegen.maps import mipmap, prefilter
 from codegen.scene.environment import COARSE, Texels, median_cut, read_map, texels
+from conformance.bench.fur.plate import Panel, draw_in_turns
 from conformance.picture.backends import open_backend
-from conformance.picture.fur_march import March, Varyings
-from conformance.picture.fur_plate import SCENES, Panel, draw_in_turns
-from conformance.picture.fur_render import FurStudio, lit_shading, set_up_fur
-from conformance.picture.scene import Light
+from conformance.picture.fur.march import March, Varyings
+from conformance.picture.fur.studio import FurStudio, lit_shading, set_up_fur
+from conformance.picture.scene import SCENES, Light
 from conformance.picture.vectors import dot, unit
 
 Doubles = npt.NDArray[np.float64]
@@ -139,7 +139,7 @@ def main() -> int:
         studio = set_up_fur(load_library(), options.scene, **changes)
         found, times = errors(studio, COUNTS), costs(studio, COUNTS, options.target)
     except UserError as error:
-        print(f"fur_sky: {error}", file=sys.stderr)
+        print(f"sky: {error}", file=sys.stderr)
         return 2
     for count in COUNTS:
         print(f"{count:3} lights  error {found.by_lights[count]:.3f}  time x {times[count]:.2f}")

@@ -1,4 +1,4 @@
-"""A scene with a [strands] table made ready, and drawn: ribbons by OpenGL and WebGPU, rays for all others."""
+"""A scene with a [strands] table made ready, and opened on OpenGL or WebGPU with the generated stages."""
 
 from __future__ import annotations
 
@@ -7,10 +7,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from codegen.backends import open_runtime
 from codegen.errors import UserError
 from codegen.fur.layout import LEAST_LIGHTS, Block
 from codegen.fur.shading import FurShading, member_name, strand_shading
@@ -20,12 +16,11 @@ from codegen.strands.ribbons import Ribbons, copied, ribbons
 from codegen.strands.stages import ENTRIES, STATE, strand_block, strand_texts
 from codegen.strands.tfx import MOST_POINTS, read_strands
 from conformance.picture.backends import models
-from conformance.picture.fur_frame import light_arrays, view_projection
-from conformance.picture.fur_render import DEPTH_FROM, LARGEST_SIDE
+from conformance.picture.rasterise import ball, clip_space, light_arrays, open_scene, refuse_too_large
 from conformance.picture.scene import Picture, Scene, read_scene
 from conformance.picture.shade import bind
 from conformance.picture.sky import lit_by_sky
-from conformance.picture.strand_settings import Hair
+from conformance.picture.strands.settings import Hair
 from targets.raster import Draw
 from targets.raster import Scene as Drawing
 
@@ -47,23 +42,12 @@ class StrandStudio:
         """The uniform block of the stages."""
         return strand_block(self.shading)
 
-    @property
-    def drawn_size(self) -> tuple[int, int]:
-        """Samples (width, height)."""
-        width, height = self.picture.size
-        return width * self.picture.supersample, height * self.picture.supersample
-
     def values(self, target: str) -> dict[str, Any]:
         """Values by member of the uniform block."""
-        width, height = self.picture.size
-        positions = self.ribbons.vertices["position"].astype(np.float64)
-        centre = (positions.min(axis=0) + positions.max(axis=0)) / 2.0
-        reach = float(np.linalg.norm(positions - centre, axis=1).max()) + self.hair.width
-        camera = self.picture.camera
-        matrix = view_projection(camera, width / height, (centre, reach), DEPTH_FROM[target])
+        bounds = ball(self.ribbons.vertices, self.hair.width)
         return {
-            "view_projection": matrix.T.reshape(-1),
-            "eye": camera.eye,
+            "view_projection": clip_space(self.picture, bounds, target),
+            "eye": self.picture.camera.eye,
             "width": self.hair.width,
             "tip_share": self.hair.tip,
             "s_min": self.hair.s_min,
@@ -85,8 +69,7 @@ def set_up_strands(library: Library, path: Path, **changes: Any) -> StrandStudio
     hair, picture = scene.hair, lit_by_sky(scene, replace(scene.picture, **changes))
     if picture.shadows:
         raise UserError(f"{path}: [render] shadows: strands cast no shadows; set it to false")
-    if max(picture.size) * picture.supersample > LARGEST_SIDE:
-        raise UserError(f"{path}: [render] size times supersample may be {LARGEST_SIDE} at most")
+    refuse_too_large(path, picture)
     bound = bind(scene, models(library))
     shading = strand_shading(library, bound.function)
     shading = replace(shading, lights=max(LEAST_LIGHTS, len(picture.lights)))
@@ -106,33 +89,6 @@ def open_strands(studio: StrandStudio, target: str, dialect: str | None = None) 
     if target not in DIALECTS:
         raise UserError(f"target {target} draws no strands; {' and '.join(DIALECTS)} do")
     texts = strand_texts(studio.library, studio.shading, target, dialect or DIALECTS[target][0])
-    runtime, found = open_runtime(target), studio.ribbons
-    if target == "glsl":
-        from targets.glsl.raster import GlslScene
-
-        stages = texts["strand.vert"], texts["strand.frag"]
-        draw = Draw(*stages, found.vertices, found.triangles, 1, STATE)
-        return GlslScene(runtime, [draw], studio.drawn_size)
-    from targets.wgsl.raster import WgslScene
-
-    draw = Draw(*ENTRIES, found.vertices, found.triangles, 1, STATE)
-    return WgslScene(runtime, texts["strands.wgsl"], [draw], studio.drawn_size)
-
-
-def draw_strands(studio: StrandStudio, target: str) -> tuple[npt.NDArray[np.float32], str]:
-    """Premultiplied samples (height, width, 4) of a scene's strands, and the driver that they are from.
-
-    target  glsl and wgsl draw ribbons; opencl, numpy and numpy32 shade what rays meet of them
-    errors  UserError for an unknown target, and without a driver
-    """
-    if target not in DIALECTS:
-        from conformance.picture.backends import open_backend
-        from conformance.picture.strand_march import march_strands
-
-        backend = open_backend(target, studio.library)
-        return march_strands(studio, backend), backend.driver
-    drawing = open_strands(studio, target)
-    samples = drawing.draw(studio.block.pack(studio.values(target)))
-    drawing.release()
-    device = open_runtime(target).device
-    return samples, f"{device.driver}, {device.device}"
+    stages = ENTRIES if target == "wgsl" else (texts["strand.vert"], texts["strand.frag"])
+    draw = Draw(*stages, studio.ribbons.vertices, studio.ribbons.triangles, 1, STATE)
+    return open_scene(target, texts, "strands.wgsl", [draw], studio.picture.samples)

@@ -16,7 +16,7 @@ import numpy.typing as npt
 import trimesh
 from trimesh.ray.ray_pyembree import RayMeshIntersector
 
-from conformance.picture.fur_render import FurStudio
+from conformance.picture.fur.studio import FurStudio
 from conformance.picture.shade import Backend
 from conformance.picture.stage_inputs import repeated, shading_inputs
 from conformance.picture.vectors import dot, unit
@@ -49,7 +49,7 @@ class March:
     def __init__(self, studio: FurStudio, backend: Backend) -> None:
         self.studio = studio
         self.backend = backend
-        width, height = studio.drawn_size
+        width, height = studio.picture.samples
         self.eye = np.asarray(studio.picture.camera.eye, np.float64)
         self.directions = studio.picture.camera.directions(width, height)
         self.nearest = np.full(len(self.directions), np.inf)
@@ -76,7 +76,7 @@ class March:
             if len(triangles):
                 found = self._meet(varyings["position"], triangles, culled=False)
                 self._blend(found, triangles, varyings, self._fin_alpha)
-        width, height = self.studio.drawn_size
+        width, height = self.studio.picture.samples
         samples = np.concatenate([self.colour, self.coverage[:, :1]], axis=1)
         return samples.reshape(height, width, 4).astype(np.float32)
 

@@ -15,7 +15,7 @@ from trimesh.ray.ray_pyembree import RayMeshIntersector
 
 from conformance.picture.shade import Backend
 from conformance.picture.stage_inputs import repeated, shading_inputs
-from conformance.picture.strand_render import StrandStudio
+from conformance.picture.strands.studio import StrandStudio
 from conformance.picture.vectors import unit
 from conformance.picture.visibility import barycentric
 
@@ -24,7 +24,7 @@ Singles = npt.NDArray[np.float32]
 
 def march_strands(studio: StrandStudio, backend: Backend) -> Singles:
     """Premultiplied linear colour and coverage (height, width, 4), top row first."""
-    width, height = studio.drawn_size
+    width, height = studio.picture.samples
     eye = np.asarray(studio.picture.camera.eye, np.float64)
     directions = studio.picture.camera.directions(width, height)
     triangles = studio.ribbons.triangles

@@ -1,8 +1,8 @@
-"""The plate that shows what each piece of fur buys: `python -m conformance.picture.fur_plate`.
+"""The plate that shows what each piece of fur buys: `python -m conformance.bench.fur.plate`.
 
-Panels and their changes to the scene are data, in fur_plate.toml. The time beside a caption is that of one
+Panels and their changes to the scene are data, in plate.toml. The time beside a caption is that of one
 frame, drawn in turns with the other panels; on a software driver, the processor time of the process with the
-driver on one thread. --record keeps the times as fur_plate.json, from which the table of README.md is made.
+driver on one thread. --record keeps the times as plate.json, from which the table of README.md is made.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from conformance.bench.fur.page import RECORDED_PLATE as RECORDED
 from conformance.bench.fur.page import update_readme
 from conformance.bench.fur.rounds import THREADS, frame_clock
 from conformance.bench.record import as_json, described_device, machine_data, rounded
-from conformance.picture.fur_render import FurStudio, develop, lit_shading, open_drawing, set_up_fur
+from conformance.picture.fur.studio import FurStudio, lit_shading, open_fur, set_up_fur
 from conformance.picture.image import contact_sheet, write_png
+from conformance.picture.rasterise import develop
+from conformance.picture.scene import EXAMPLES, SCENES
 from conformance.picture.tone import eight_bit
 from targets.raster import Picture
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-SCENES = EXAMPLES / "scenes"
 PLATE = EXAMPLES / "pictures" / "fur-pieces.png"
 COLUMNS = 4
 
@@ -50,7 +50,7 @@ class Panel:
 
 
 def read_plan() -> dict[str, Any]:
-    """What fur_plate.toml says."""
+    """What plate.toml says."""
     return tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
@@ -70,7 +70,7 @@ def panels(library: Library, plan: Mapping[str, Any], **changes: Any) -> list[Pa
         shading = lit_shading(fur_shading(library, entry["model"]), studio.picture, coat)
         missing = [slot.path for slot in shading.material if slot.path not in material]
         if missing:
-            raise UserError(f'fur_plate.toml: panel "{entry["caption"]}" lacks {", ".join(missing)}')
+            raise UserError(f'plate.toml: panel "{entry["caption"]}" lacks {", ".join(missing)}')
         chosen = {slot.path: material[slot.path] for slot in shading.material}
         made.append(Panel(entry["caption"], replace(studio, fur=coat, shading=shading, material=chosen)))
     return made
@@ -80,7 +80,7 @@ def draw_in_turns(
     made: list[Panel], target: str, rounds: int, clock: Clock = time.process_time
 ) -> tuple[list[Picture], list[float]]:
     """The samples of every panel, and the least time of one frame in seconds; others only add to it."""
-    drawings = [open_drawing(panel.studio, target) for panel in made]
+    drawings = [open_fur(panel.studio, target) for panel in made]
     blocks = [panel.studio.block.pack(panel.studio.values(target)) for panel in made]
     pictures = [drawing.draw(block) for drawing, block in zip(drawings, blocks, strict=True)]
     seconds = np.empty((rounds, len(made)))
@@ -107,7 +107,7 @@ def draw_plate(path: Path, target: str) -> dict[str, Any]:
         for panel, picture, cost in zip(made, pictures, seconds, strict=True)
     ]
     write_png(path, contact_sheet(shown, COLUMNS))
-    width, height = made[0].studio.drawn_size
+    width, height = made[0].studio.picture.samples
     data: dict[str, Any] = rounded(
         {
             "date": datetime.now(UTC).date().isoformat(),
@@ -138,7 +138,7 @@ def main() -> int:
     try:
         data = draw_plate(options.output, options.target)
     except UserError as error:
-        print(f"fur_plate: {error}", file=sys.stderr)
+        print(f"plate: {error}", file=sys.stderr)
         return 2
     if options.record:
         write_text(RECORDED, as_json(data))

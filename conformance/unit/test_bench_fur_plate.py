@@ -5,7 +5,7 @@ import pytest
 
 from codegen.errors import UserError
 from codegen.library import load_library
-from conformance.picture.fur_plate import draw_in_turns, panels, read_plan
+from conformance.bench.fur.plate import draw_in_turns, panels, read_plan
 from targets import TargetUnavailable, probe
 
 

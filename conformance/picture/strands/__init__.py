@@ -1,0 +1,1 @@
+"""Strands of hair: their scene made ready, drawn as ribbons by rasterisers and by rays."""
