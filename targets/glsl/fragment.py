@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from targets.glsl.runtime import GlslRuntime
+from targets.glsl.compute import GlslRuntime
 from targets.lanes import UNWRITTEN, check_words
 from targets.protocol import Prepared
 from targets.textures import TextureData

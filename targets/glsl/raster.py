@@ -8,7 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from targets.glsl.runtime import GlslRuntime
+from targets.glsl.compute import GlslRuntime
 from targets.protocol import BuildFailed
 from targets.raster import Draw, Picture, attributes
 
