@@ -20,8 +20,7 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import F32, Vector
 from codegen.library import Library
 from codegen.passes.specialise import Specialised, specialise
-from conformance.fuzz.choices import Choice
-from conformance.metamorphic.source.vectors import RELATIONS
+from conformance.programs.components import componentwise
 
 UNROLLED = 16
 """Turns of a loop that compilers write out."""
@@ -29,7 +28,6 @@ LONGEST = 64
 """Terms of a chain that is looked at."""
 MOST_ORDERED = 5
 """Terms of a sum that is taken in any order: n terms have about 3^n partial sums."""
-(SCALAR_PATH,) = RELATIONS
 
 Known = Mapping[str, ir.Expr]
 
@@ -56,26 +54,23 @@ def straightened(library: Library, name: str) -> Specialised:
     return specialise(library, name, kinds=(), new_name=name, unroll=UNROLLED)
 
 
-def chained(function: ir.Function, library: Library, constants_first: bool) -> ir.Function:
+def chained(function: ir.Function, constants_first: bool) -> ir.Function:
     """A straightened function with its chains' constants together, before or behind the other terms."""
-    return _changed(function, library, partial(_together, constants_first))
+    return _changed(function, partial(_together, constants_first))
 
 
-def reordered(function: ir.Function, library: Library) -> ir.Function:
+def reordered(function: ir.Function) -> ir.Function:
     """A straightened function with short sums in any order, written as `dot` where a table says so of it."""
-    return _changed(function, library, _reordered)
+    return _changed(function, _reordered)
 
 
-def gathered(function: ir.Function, library: Library) -> ir.Function:
+def gathered(function: ir.Function) -> ir.Function:
     """The same with multiples of one value in a sum gathered: a x + b x becomes x (a + b)."""
-    return _changed(function, library, _gathered)
+    return _changed(function, _gathered)
 
 
-def _changed(
-    function: ir.Function, library: Library, change: Callable[[Known, ir.Expr], ir.Expr]
-) -> ir.Function:
-    apart = SCALAR_PATH.apply(function, library, Choice(0))
-    body = (apart.function if apart else function).body
+def _changed(function: ir.Function, change: Callable[[Known, ir.Expr], ir.Expr]) -> ir.Function:
+    body = componentwise(function).body
     known = {s.name: s.value for s in ir.statements(body) if isinstance(s, ir.Let) and not s.mutable}
     return replace(function, body=ir.map_body(body, partial(change, known)))
 

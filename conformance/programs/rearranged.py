@@ -59,9 +59,9 @@ def _forms(
         yield library.with_functions(map(change, selected)), inputs
     straight = straightened(library, name)
     arguments = straight.arguments(inputs) if straight.parameters else {}
-    forms = [chained(straight.function, library, first) for first in (False, True)]
+    forms = [chained(straight.function, first) for first in (False, True)]
     if table.row("dot").accuracy == ANY_ORDER:
-        forms += [form(straight.function, library) for form in (reordered, gathered)]
+        forms += [form(straight.function) for form in (reordered, gathered)]
     for made in forms:
         yield library.with_functions([made]), arguments
 

@@ -116,7 +116,7 @@ def test_multiples_of_one_value_are_gathered(tmp_path: Path) -> None:
     source = "def probe(x: X, y: X) -> f32:\n    a = x * 1.1\n    return a * 3.0 - y - x * 3.3\n"
     library = library_of(tmp_path, source)
     straight = straightened(library, "probe").function
-    made = gathered(straight, library)
+    made = gathered(straight)
     inputs = {"x": np.array([1.7], np.float32), "y": np.array([0.3], np.float32)}
     once = [e for e in ir.expressions(made.body) if isinstance(e, ir.Var) and e.name == "x"]
     assert len(once) == 1
@@ -156,7 +156,7 @@ def test_a_specification_that_keeps_the_order_explains_nothing(tmp_path: Path) -
 @pytest.mark.parametrize("constants_first", [False, True])
 def test_constants_of_a_product_come_together(constants_first: bool, tmp_path: Path) -> None:
     library = library_of(tmp_path, PRODUCT)
-    made = chained(straightened(library, "probe").function, library, constants_first)
+    made = chained(straightened(library, "probe").function, constants_first)
     (constants,) = [
         e
         for e in ir.expressions(made.body)
@@ -176,7 +176,7 @@ def test_chains_mean_what_they_were_made_of(constants_first: bool, tmp_path: Pat
     changed = 0
     for case in cases:
         straight = straightened(library, case.entry)
-        made = chained(straight.function, library, constants_first)
+        made = chained(straight.function, constants_first)
         changed += made.body != straight.function.body
         inputs = draw_inputs(case, library.function(case.entry).parameters, 32)
         wanted = evaluate(library, case.entry, inputs, "float64")
