@@ -72,6 +72,29 @@ def test_call_kept_by_request(tmp_path: Path) -> None:
     assert lines(found) == ["return h(x) + 1.0;"]
 
 
+def test_kept_calls_may_take_structs_and_differ_by_their_name(tmp_path: Path) -> None:
+    text = (
+        STRUCT + "@helper\ndef g(pair: Pair) -> f32:\n    return pair.first * pair.second.x\n"
+        "@helper\ndef h(pair: Pair) -> f32:\n    return pair.first + pair.second.x\n"
+        "def f(x: X, d: D) -> f32:\n    pair = Pair(x, d)\n    return max(g(pair), 1.0) - h(pair)\n"
+    )
+    library = library_of(tmp_path, text)
+    found = specialise(library, "f", keep={"g", "h"}, new_name="kept")
+    inputs = {"x": np.array([3.0, -1.0], np.float32), "d": np.array([[0.6, 0.8, 0.0]] * 2, np.float32)}
+    special = evaluate(library.with_functions([found.function]), "kept", inputs)
+    assert set(ir.callees(found.function)) == {"g", "h"}
+    np.testing.assert_array_equal(special, evaluate(library, "f", inputs))
+
+
+@pytest.mark.parametrize("expression", ["u32(0) - n", "n * u32(0xFFFFFFFF)"])
+def test_what_has_no_sign_is_not_negated(tmp_path: Path, expression: str) -> None:
+    library = library_of(tmp_path, f"def f(n: u32) -> u32:\n    return {expression}\n")
+    found = specialise(library, "f", new_name="g")
+    inputs = {"n": np.array([0, 1, 7, 2**32 - 1], np.uint32)}
+    special = evaluate(library.with_functions([found.function]), "g", inputs)
+    np.testing.assert_array_equal(special, evaluate(library, "f", inputs))
+
+
 def test_unit_vectors_have_length_one_when_asked(tmp_path: Path) -> None:
     text = "def f(t: D, n: D, x: X) -> f32:\n    return x * dot(t, n) + length(n)\n"
     known: dict[str, Any] = {"aliases": {"t": "n"}}

@@ -19,7 +19,7 @@ from codegen.intervals.numbers import LARGEST, SMALLEST
 from codegen.intervals.values import Range, Single, Truth, Whole, constant
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Edges, Finite, Interval, Length, Unit
-from codegen.ir.types import BOOL, F32, I32, Array, Scalar, Type, Vector
+from codegen.ir.types import BOOL, F32, I32, Array, Scalar, Struct, Type, Vector
 from codegen.passes.analysis.norms import UNIT_SLACK, Lengths
 from codegen.passes.analysis.transfer import Bound, Transfer, remembered, transfers
 from codegen.passes.ssa.values import Values, any_element
@@ -101,6 +101,8 @@ class Ranges:
                 return self._variable(e)
             case ir.Call() | ir.Member():
                 return _anything(e.type)
+            case ir.Construct() if isinstance(e.type, Struct) and not isinstance(e.type, Array):
+                return ()  # an argument of a call that is kept
             case _:
                 return None
 

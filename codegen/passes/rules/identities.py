@@ -20,6 +20,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from codegen.ir import nodes as ir
+from codegen.ops import OPERATORS
 from codegen.passes.analysis.norms import is_unit
 from codegen.passes.analysis.ranges import Ranges
 from codegen.passes.ssa import patterns
@@ -54,7 +55,7 @@ ROWS = (
     # Sums
     Row("x + 0", "x", "exact", "adding 0 changes nothing"),
     Row("x - 0", "x", "exact", "subtracting 0 changes nothing"),
-    Row("0 - x", "-x", "exact", "0 - x is representable"),
+    Row("0 - x", "-x", "exact", "0 - x is representable", ("signed x",)),
     Row("x - x", "0", "finite", "the difference of a number and itself is 0"),
     Row("x + -y", "x - y", "exact", "IEEE defines x - y so"),
     Row("x - -y", "x + y", "exact", "IEEE defines x - y as x + (-y)"),
@@ -63,7 +64,7 @@ ROWS = (
     # Products
     Row("x * 0", "0", "finite", "0 times a finite number is 0"),
     Row("x * 1", "x", "exact", "the product is representable"),
-    Row("x * -1", "-x", "exact", "the product is representable"),
+    Row("x * -1", "-x", "exact", "the product is representable", ("signed x",)),
     Row("-x * -y", "x * y", "exact", "signs"),
     Row("x / 1", "x", "exact", "the quotient is representable, and every table permits it"),
     Row("x / a", "x * (1 / a)", "exact", "the reciprocal of a power of two is one", SCALED),
@@ -159,6 +160,10 @@ def _varies(values: Values, ranges: Ranges, e: ir.Expr) -> bool:
     return constant_components(e) is None
 
 
+def _signed(values: Values, ranges: Ranges, e: ir.Expr) -> bool:
+    return OPERATORS["negate"].result((e.type,)) is not None
+
+
 def _unit(values: Values, ranges: Ranges, e: ir.Expr) -> bool:
     return is_unit(values, e)
 
@@ -175,6 +180,7 @@ CONDITIONS: dict[str, Callable[..., bool]] = {
     "power_of_two": _power_of_two,
     "constant": _constant,
     "varies": _varies,
+    "signed": _signed,
     "unit": _unit,
     "nonzero": _nonzero,
     "above": _above,
