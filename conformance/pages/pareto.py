@@ -12,6 +12,8 @@ import matplotlib
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
+from conformance.plots import lighten
+
 INCHES = (4.2, 3.0)
 COLOURS = {
     "#111111": "var(--ink)",
@@ -60,13 +62,7 @@ def picture(points: Sequence[dict[str, Any]], base: str, title: str) -> str:
             label = p["name"].removeprefix(base).strip("_") or "default"
             axes.annotate(label, (x, y), xytext=(6, 4), textcoords="offset points", fontsize=8, color=SOFT)
         axes.margins(0.22)
-        for side in ("top", "right"):
-            axes.spines[side].set_visible(False)
-        for side in ("left", "bottom"):
-            axes.spines[side].set_color(LINE)
-        axes.grid(True, which="major", color=LINE, linewidth=0.6)
-        axes.set_axisbelow(True)
-        axes.tick_params(colors=SOFT, labelsize=8, which="both", length=0)
+        lighten(axes, SOFT, LINE, labels=8)
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
         axes.yaxis.set_major_formatter(FuncFormatter(_power))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterator, Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from codegen.library import Library
 from codegen.version import VERSION
 from conformance.pages import function
 from conformance.pages.text import code_style, rendered, title_of
+from conformance.templates import carried, templates
 
 GUIDES = ("vendor", "generate", "conformance", "adding", "ci")
 """The guides, in the order of the index."""
@@ -32,7 +32,7 @@ def site(library: Library, names: Sequence[str]) -> Iterator[tuple[str, bytes]]:
 
     names  functions that get a page; others are named without a link
     """
-    style = _text("conformance.report", "page/report.css") + _text(__package__, "templates/pages.css")
+    style = carried("conformance.report", "page/report.css") + carried(__package__, "templates/pages.css")
     yield "style.css", (style + code_style()).encode()
     guides = [(name, title_of(guide(name)), NOTES[name]) for name in GUIDES]
     sections: dict[str, list[Any]] = {}
@@ -63,7 +63,7 @@ def site(library: Library, names: Sequence[str]) -> Iterator[tuple[str, bytes]]:
 
 def guide(name: str) -> str:
     """A guide's Markdown."""
-    return _text("codegen", f"guides/{name}.md")
+    return carried("codegen", f"guides/{name}.md")
 
 
 def _page(template: str, shared: dict[str, Any], **shown: Any) -> bytes:
@@ -72,13 +72,7 @@ def _page(template: str, shared: dict[str, Any], **shown: Any) -> bytes:
 
 @functools.cache
 def _environment() -> jinja2.Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("conformance.pages", "templates"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates("conformance.pages", "templates")
     environment.filters["figure"] = figure
     return environment
 
@@ -88,7 +82,3 @@ def figure(value: Any) -> str:
     if isinstance(value, str):
         return value
     return "0" if value == 0 else f"{value:.3g}"
-
-
-def _text(package: str, path: str) -> str:
-    return files(package).joinpath(path).read_text(encoding="utf-8")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Mapping
-from importlib.resources import files
 from typing import Any
 
 import jinja2
@@ -14,6 +13,7 @@ from codegen.library import Library
 from conformance.bench.selfcheck import EXPECTED, MEANING
 from conformance.report.light import light_view
 from conformance.report.view import KINDS, MODES, view
+from conformance.templates import carried, templates
 
 PLOTLY = ("plotly", "package_data/plotly.min.js")
 TABLES = ("itables", "html/dt_bundle.js")
@@ -33,8 +33,8 @@ def page(library: Library, report: Mapping[str, Any]) -> str:
         expected=EXPECTED,
         meaning=MEANING,
         data=embedded({key: shown[key] for key in ("drivers", "modes", "groups")}),
-        tables=base64.b64encode(_text(*TABLES).encode()).decode(),
-        tables_style=_text(*TABLES_STYLE),
+        tables=base64.b64encode(carried(*TABLES).encode()).decode(),
+        tables_style=carried(*TABLES_STYLE),
     )
 
 
@@ -45,13 +45,7 @@ def light_page(light: Mapping[str, Any]) -> str:
 
 
 def _template(name: str) -> jinja2.Template:
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("conformance.report", "page"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates("conformance.report", "page")
     environment.filters["number"] = number
     return environment.get_template(name)
 
@@ -64,9 +58,9 @@ def _shared(report: Mapping[str, Any], scripts: list[str]) -> dict[str, Any]:
         "light": light,
         "light_data": embedded(light["data"]) if light else "",
         "figures": figures(report),
-        "plotly": _text(*PLOTLY),
-        "style": _text("conformance.report", "page/report.css"),
-        "script": "\n".join(_text("conformance.report", f"page/{name}") for name in scripts),
+        "plotly": carried(*PLOTLY),
+        "style": carried("conformance.report", "page/report.css"),
+        "script": "\n".join(carried("conformance.report", f"page/{name}") for name in scripts),
     }
 
 
@@ -104,7 +98,3 @@ def number(value: float | None, digits: int = 3) -> str:
         return f"{value:,.{decimals}f}"
     mantissa, exponent = f"{value:.{digits - 2}e}".split("e")
     return f"{mantissa}e{int(exponent)}"
-
-
-def _text(package: str, path: str) -> str:
-    return files(package).joinpath(path).read_text(encoding="utf-8")

@@ -13,16 +13,16 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 from matplotlib.transforms import Bbox
 
+from conformance.plots import BLUE, INK, ORANGE, SOFT, lighten
 from conformance.report.model import HALF_STEP, error_in, label
 
 MODE, UNIT = "throughput", "steps"
-INK, SOFT, LINE, ACCENT, OTHER = "#1d1c1a", "#5f5d58", "#dedcd5", "#2563b8", "#b4540a"
 EXACT, BEYOND = 1e-6, 1e3
 """Errors in steps between which marks stand where they belong: results without any error are drawn at the one
 end, what is of no use as a colour at the other, with a mark of its own."""
 KINDS = {
-    "variant": ("variant", ACCENT, "o"),
-    "peer": ("a peer's form", OTHER, "D"),
+    "variant": ("variant", BLUE, "o"),
+    "peer": ("a peer's form", ORANGE, "D"),
     "printed": ("as printed", SOFT, "x"),
 }
 BEYOND_MARK = "^"
@@ -76,13 +76,7 @@ def points(result: Mapping[str, Any]) -> list[tuple[str, str, float, float]]:
 
 def _panel(axes: Axes, title: str, found: list[tuple[str, str, float, float]]) -> None:
     axes.set_title(title, loc="left", fontsize=10.5, color=INK, fontweight="bold")
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
-    for side in ("left", "bottom"):
-        axes.spines[side].set_color(LINE)
-    axes.grid(True, which="major", color=LINE, linewidth=0.6)
-    axes.set_axisbelow(True)
-    axes.tick_params(colors=SOFT, labelsize=8.5, which="both", length=0)
+    lighten(axes)
     axes.axvline(1.0, color=SOFT, linewidth=0.8)
     axes.axhline(HALF_STEP, color=SOFT, linewidth=0.8, linestyle=(0, (2, 2)))
     axes.annotate(

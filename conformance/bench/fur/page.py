@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from codegen.files import write_text
+from conformance.plots import BLUE, GREEN, INK, LINE, ORANGE, PURPLE, SOFT
 
 FOLDER = Path(__file__).parent
 RESULTS = FOLDER / "results"
@@ -17,8 +18,7 @@ FIGURE = RESULTS / "scaling.png"
 RECORDED_PLATE = FOLDER / "plate.json"
 README = FOLDER / "README.md"
 BEGIN, END = "<!-- begin {} -->", "<!-- end {} -->"
-INK, SOFT, LINE = "#1d1c1a", "#5f5d58", "#dedcd5"
-COLOURS = ("#2563b8", "#b4540a", "#3b7a3e", "#7a3b76")
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE)
 INCHES, DOTS_PER_INCH = (7.4, 3.3), 160
 
 Results = list[dict[str, Any]]

@@ -28,6 +28,7 @@ from conformance.picture.fur.studio import FurStudio, set_up_fur
 from conformance.picture.rasterise import develop
 from conformance.picture.scene import SCENES
 from conformance.picture.tone import eight_bit, steps_apart
+from conformance.plots import BLUE, INK, LINE, ORANGE, SOFT
 
 Doubles = npt.NDArray[np.float64]
 
@@ -36,10 +37,9 @@ SHOWN = (5, 17, 65)
 OPACITY = 0.3
 """Of a hair on one of the reference's shells: light passes several shells, so that their number matters."""
 SIDE, SUPERSAMPLE = 96, 2
-INK, SOFT, LINE = "#1d1c1a", "#5f5d58", "#dedcd5"
 MARKS: tuple[dict[str, Any], ...] = (
-    {"color": "#2563b8", "marker": "o", "markersize": 9.0, "markerfacecolor": "none"},
-    {"color": "#b4540a", "marker": "x", "markersize": 6.0, "linestyle": "none"},
+    {"color": BLUE, "marker": "o", "markersize": 9.0, "markerfacecolor": "none"},
+    {"color": ORANGE, "marker": "x", "markersize": 6.0, "linestyle": "none"},
 )
 """The ways of drawing all but coincide."""
 TICKS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
