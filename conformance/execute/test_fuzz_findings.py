@@ -16,8 +16,9 @@ import pytest
 from codegen.execute import execute
 from conformance.programs import judge
 from conformance.programs.rearranged import explained
+from conformance.unit.support.drivers import need
 from conformance.unit.support.sources import library_of
-from targets import TARGETS, TargetUnavailable, open_runtime, probe
+from targets import TARGETS, open_runtime
 
 FINDINGS: dict[str, dict[str, Any]] = tomllib.loads(
     (Path(__file__).parent / "fuzz_findings.toml").read_text(encoding="utf-8")
@@ -27,9 +28,7 @@ FINDINGS: dict[str, dict[str, Any]] = tomllib.loads(
 @pytest.mark.parametrize("target", TARGETS)
 @pytest.mark.parametrize("name", FINDINGS)
 def test_finding_has_a_verdict(name: str, target: str, tmp_path: Path) -> None:
-    missing = probe(target)
-    if isinstance(missing, TargetUnavailable):
-        pytest.skip(str(missing))
+    need(target)
     finding = FINDINGS[name]
     library = library_of(tmp_path, finding["source"])
     inputs = {

@@ -24,8 +24,8 @@ from conformance.bench.fur.frames import BY_HAND, FAKE_FUR, FIXED, FLOOR, GENERA
 from conformance.bench.fur.rounds import in_turns, line, net_of, ratio
 from conformance.picture.fur.studio import FurStudio
 from conformance.picture.tone import eight_bit
+from conformance.unit.support.drivers import need
 from conformance.unit.support.tolerances import tolerance
-from targets import TargetUnavailable, probe
 
 BOUNDS = tomllib.loads((FOLDER / "bounds.toml").read_text(encoding="utf-8"))
 
@@ -45,9 +45,7 @@ def found(bunny: FurStudio) -> Fragments:
 def test_the_hand_written_stages_draw_the_same_picture(
     target: str, bunny: FurStudio, found: Fragments
 ) -> None:
-    answer = probe(target)
-    if isinstance(answer, TargetUnavailable):
-        pytest.skip(str(answer))
+    need(target)
     made = frames(bunny, target)
     assert set(made) == {GENERAL, FIXED, BY_HAND, TYPED_IN, FLOOR} and len(found.values) > 200
     pictures = {}

@@ -12,7 +12,7 @@ from PIL import Image
 
 from codegen.cli import run
 from conformance.picture.tolerances import tolerance
-from targets import TargetUnavailable, probe
+from conformance.unit.support.drivers import need
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PROGRAMS = {"opengl": "glsl", "webgpu": "wgsl"}
@@ -41,9 +41,7 @@ def kit(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_the_program_draws_the_picture_of_vair_render(kit: Path, program: str) -> None:
-    answer = probe(PROGRAMS[program])
-    if isinstance(answer, TargetUnavailable):
-        pytest.skip(str(answer))
+    need(PROGRAMS[program])
     ours, theirs = kit / f"vair-{program}.png", kit / f"{program}.png"
     scene = str(kit / "scene.toml")
     assert run(["render", scene, "--target", PROGRAMS[program], "-o", str(ours)]) == 0

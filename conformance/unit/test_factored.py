@@ -21,8 +21,9 @@ from conformance.factored import page, speed
 from conformance.factored.fits import KEPT, fit_row, material_row
 from conformance.factored.plan import Fit, library, read_plan
 from conformance.factored.published import WATERLOO
+from conformance.unit.support.drivers import need
 from conformance.unit.support.tolerances import tolerance
-from targets import TargetUnavailable, open_runtime
+from targets import open_runtime
 
 PLAN = read_plan()
 RECORD = page.read_fits()
@@ -106,10 +107,8 @@ def test_the_direct_functions_are_what_was_fitted(fit: Fit) -> None:
 
 
 def test_the_timing_says_what_it_should() -> None:
-    try:
-        runtime = open_runtime("glsl")
-    except TargetUnavailable as reason:
-        pytest.skip(str(reason))
+    need("glsl")
+    runtime = open_runtime("glsl")
     effort = replace(QUICK, rounds=2, most=2, seconds=1e-4, launches=1.0)
     bench = Bench(library(), runtime, effort)
     rows = speed.rows(bench, speed.table_rival(library()))["members"]

@@ -20,8 +20,9 @@ from codegen.fur.shading import SCALED, fur_shading
 from codegen.fur.stages import stage_texts
 from codegen.ir import nodes as ir
 from codegen.library import load_library
-from conformance.bench.fur.frames import FAKE_FUR, SCENES, frame, studio
-from targets import TargetUnavailable, probe
+from conformance.bench.fur.frames import FAKE_FUR, frame, studio
+from conformance.picture.scene import SCENES
+from conformance.unit.support.drivers import need
 
 LIBRARY = load_library()
 MODELS = ("fakefur_shade", "fakefur_shade_slab", "shell_shade", "scheuermann_shade", "kajiya_kay_shade")
@@ -83,9 +84,7 @@ def test_budgets_choose_cheaper_forms(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_without_lights_hairs_are_black() -> None:
-    answer = probe("glsl")
-    if isinstance(answer, TargetUnavailable):
-        pytest.skip(str(answer))
+    need("glsl")
     made = studio(LIBRARY, FAKE_FUR, 24, subdivide=0)
     block = made.block.pack({**made.values("glsl"), "light_count": 0})
     scene = frame(made, "glsl").open("glsl")

@@ -11,7 +11,8 @@ from codegen.scene.general import general_function
 from codegen.scene.proof.errors import Reference
 from codegen.scene.proof.points import draw
 from conformance.bench.handwritten import beside
-from targets import TARGETS, TargetUnavailable, open_runtime
+from conformance.unit.support.drivers import need
+from targets import TARGETS, open_runtime
 
 MODEL = 0.5
 """Half steps of 8 bits: what the hand-written forms lose at ordinary points; another model is far off."""
@@ -19,10 +20,8 @@ MODEL = 0.5
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_the_hand_written_functions_are_the_same_model(target: str) -> None:
-    try:
-        runtime = open_runtime(target)
-    except TargetUnavailable as e:
-        pytest.skip(str(e))
+    need(target)
+    runtime = open_runtime(target)
     library = load_library()
     scene = read_scene(beside.SCENE, library)
     general = general_function(scene)

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from conformance.picture.tolerances import tolerance
+from conformance.unit.support.drivers import need
 from conformance.unit.support.sphere import off, pixels, sphere
-from targets import TargetUnavailable, probe
 from targets.packages import find_tool
 
 ROOT = Path(__file__).parents[2]
@@ -40,9 +40,7 @@ def ran(*command: str, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
 )
 def test_a_program_in_python_draws_the_sphere(host: str, tmp_path: Path) -> None:
     target, tools = PROGRAMS[host]
-    answer = probe(target)
-    if isinstance(answer, TargetUnavailable):
-        pytest.skip(str(answer))
+    need(target)
     for tool in tools:
         if not find_tool(tool):
             pytest.skip(f"no {tool} is here")
@@ -52,9 +50,7 @@ def test_a_program_in_python_draws_the_sphere(host: str, tmp_path: Path) -> None
 
 
 def test_a_program_in_c_draws_the_sphere(tmp_path: Path) -> None:
-    answer = probe("glsl")
-    if isinstance(answer, TargetUnavailable):
-        pytest.skip(str(answer))
+    need("glsl")
     if not (shutil.which("make") and shutil.which("cc")):
         pytest.skip("no C compiler or no make is here: apt-get install --no-install-recommends gcc make")
     if not all(Path(f"/usr/include/{name}").exists() for name in ("EGL/egl.h", "GL/glext.h")):

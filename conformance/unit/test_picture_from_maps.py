@@ -14,6 +14,7 @@ from conformance.picture.from_maps.__main__ import main
 from conformance.picture.from_maps.plate import PLAN, Panel, Plate, made_ready
 from conformance.picture.from_maps.ways import WAYS
 from conformance.picture.tolerances import tolerance
+from conformance.unit.support.drivers import need
 from targets import TARGETS, TargetUnavailable, probe
 
 LIBRARY = load_library()
@@ -29,9 +30,7 @@ def plate(name: str) -> Plate:
 
 @cache
 def drawn(name: str, target: str) -> list[Panel]:
-    answer = probe(target)
-    if isinstance(answer, TargetUnavailable):
-        pytest.skip(str(answer))
+    need(target)
     return plate(name).draw(open_backend(target, LIBRARY))
 
 

@@ -30,7 +30,7 @@ from conformance.picture.scene import read_scene
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import steps_apart
 from conformance.picture.visibility import Camera
-from targets import TargetUnavailable, probe
+from conformance.unit.support.drivers import need
 
 ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "examples" / "scenes"
@@ -45,13 +45,6 @@ def samples(studio: FurStudio, target: str) -> Samples:
         return drawing.draw(studio.block.pack(studio.values(target)))
     finally:
         drawing.release()
-
-
-def need(*targets: str) -> None:
-    for target in targets:
-        answer = probe(target)
-        if isinstance(answer, TargetUnavailable):
-            pytest.skip(str(answer))
 
 
 @pytest.mark.parametrize("name", ["furry-bunny", "shell-lit-bunny"])

@@ -11,13 +11,11 @@ from conformance.picture.fur.convergence import converge, figure, main
 from conformance.picture.fur.studio import set_up_fur
 from conformance.picture.scene import SCENES
 from conformance.picture.tolerances import tolerance
-from targets import TargetUnavailable, probe
+from conformance.unit.support.drivers import need
 
 
 def test_every_way_of_drawing_comes_closer() -> None:
-    answer = probe("glsl")
-    if isinstance(answer, TargetUnavailable):
-        pytest.skip(str(answer))
+    need("glsl")
     path = SCENES / "furry-bunny.toml"
     studio = set_up_fur(load_library(), path, size=(24, 24), supersample=1, subdivide=0)
     found = converge(studio, ("numpy32", "glsl"), (3, 9), 17)

@@ -34,6 +34,7 @@ from conformance.picture.render import set_up
 from conformance.picture.scene import Light
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import steps_apart
+from conformance.unit.support.drivers import need
 from targets import TargetUnavailable, probe
 
 SCENE = Path(__file__).parents[2] / "examples" / "scenes" / "dawn-bunny.toml"
@@ -68,9 +69,7 @@ def drawn(dawn: FurStudio) -> dict[str, Any]:
     ],
 )
 def test_every_way_draws_the_same_light(drawn: dict[str, Any], one: str, other: str, share: str) -> None:
-    for target in (one, other):
-        if target not in drawn:
-            pytest.skip(str(probe(target)))
+    need(*(target for target in (one, other) if target != "numpy32"))
     pictures = [drawn[target][..., :3].astype(np.float64) for target in (one, other)]
     assert pictures[0].max() > 0.1 and np.isfinite(pictures).all()
     steps = steps_apart(*pictures)
@@ -110,8 +109,7 @@ def test_a_map_alone_lights_a_surface(tmp_path: Path) -> None:
 
 
 def test_shadows_only_darken(dawn: FurStudio) -> None:
-    if isinstance(probe("glsl"), TargetUnavailable):
-        pytest.skip(str(probe("glsl")))
+    need("glsl")
     bright = replace(dawn, shading=replace(dawn.shading, shadowed=False))
     with_them, without = (draw_fur(made, "glsl")[0] for made in (dawn, bright))
     assert np.array_equal(with_them[..., 3], without[..., 3])

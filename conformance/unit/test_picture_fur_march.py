@@ -21,6 +21,7 @@ from conformance.picture.fur.march import Hits, March, _first, _turns
 from conformance.picture.fur.studio import FurStudio, set_up_fur
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import steps_apart
+from conformance.unit.support.drivers import need
 from targets import TargetUnavailable, probe
 
 SCENES = Path(__file__).parents[2] / "examples" / "scenes"
@@ -38,9 +39,7 @@ def marched(made: FurStudio, backend: str) -> np.ndarray:
 
 @pytest.mark.parametrize("name", ["furry-bunny", "shell-lit-bunny"])
 def test_rays_see_what_opengl_draws(name: str) -> None:
-    answer = probe("glsl")
-    if isinstance(answer, TargetUnavailable):
-        pytest.skip(str(answer))
+    need("glsl")
     made = studio(name, 64, layers=6)
     paint = made.mesh.vertices["position"][:, 0] * 0.05 + 0.5
     vertices = made.mesh.vertices.copy()

@@ -34,6 +34,7 @@ from conformance.picture.strands.draw import draw_strands
 from conformance.picture.strands.studio import StrandStudio, open_strands, set_up_strands
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import steps_apart
+from conformance.unit.support.drivers import need
 from targets import TargetUnavailable, probe
 from targets.packages import find_tool
 from targets.wgsl import validate as wgsl
@@ -81,13 +82,6 @@ def written(folder: Path, model: str = "scheuermann") -> Path:
     path = folder / "scene.toml"
     path.write_text(text, encoding="utf-8")
     return path
-
-
-def need(*targets: str) -> None:
-    for target in targets:
-        answer = probe(target)
-        if isinstance(answer, TargetUnavailable):
-            pytest.skip(str(answer))
 
 
 def drawn(studio: StrandStudio, target: str) -> np.ndarray:

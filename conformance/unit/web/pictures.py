@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from conformance.picture.fur.draw import draw_fur
 from conformance.picture.fur.studio import FurStudio
 from conformance.picture.rasterise import develop
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import eight_bit
+from conformance.unit.support.drivers import need
 from conformance.unit.web.opened import Pixels
-from targets import TargetUnavailable, probe
 
 
 def python_picture(studio: FurStudio, target: str = "glsl") -> Pixels:
     """The scene as Python draws it; skips the test where there is no driver."""
-    answer = probe(target)
-    if isinstance(answer, TargetUnavailable):
-        pytest.skip(str(answer))
+    need(target)
     samples, _ = draw_fur(studio, target)
     return eight_bit(develop(studio.picture, samples)).astype(np.int64)
 
