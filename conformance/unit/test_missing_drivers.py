@@ -17,7 +17,7 @@ def only_wgsl(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("required", ["", "wgsl", "opencl, wgsl"])
 def test_a_missing_driver_skips_and_says_why(required: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(REQUIRED_VARIABLE, required)
-    with pytest.raises(pytest.skip.Exception, match="^glsl: apt-get install a driver$"):
+    with pytest.raises(pytest.skip.Exception, match=r"^glsl: apt-get install a driver$"):
         need("wgsl", "glsl")
     need("wgsl")
 
