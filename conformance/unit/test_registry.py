@@ -59,6 +59,8 @@ def test_row_is_complete(row: Op) -> None:
 def test_built_in_is_described(row: Op) -> None:
     assert row.summary.endswith(".")
     assert {len(types) for types, _ in row.rule} == {len(row.names)}
+    assert len(set(row.names)) == len(row.names)
+    assert all(name.isidentifier() and name.strip("_") == name for name in row.names)
 
 
 def test_a_row_given_twice_is_refused() -> None:
