@@ -1,6 +1,6 @@
 """Half forms of every kind of statement and expression compute what the source says.
 
-Plan. Small dyadic inputs, on which every operation is exact in half precision: a half form's results are those
+Plan. Small dyadic inputs, on which every operation is exact in half precision: results of a half form are those
 of the source in float32, bit for bit, also where some parameters stay f32; every version is well-formed, and
 what is no longer f32 is f16. Values that only f32 holds show where f32 is kept.
 """
@@ -62,7 +62,7 @@ def checked(made: Library, rules: HalfRules) -> ir.Function:
     """The half form of f, after looking whether all versions are well formed."""
     seen: dict[str, Any] = {}
     for version in half_versions(made, ["f"], rules):
-        verify(version.function, seen.get)  # type: ignore[arg-type]  # signatures of what has been seen
+        verify(version.function, seen.get)
         seen[version.function.name] = (
             tuple(p.type for p in version.function.parameters),
             version.function.returns,
