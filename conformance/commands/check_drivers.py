@@ -22,7 +22,7 @@ from conformance.check.result import FunctionResult
 from conformance.drivers import known
 from conformance.drivers.modes import Mode, mode, modes_of
 from conformance.drivers.record import FOLDER, Recorder
-from conformance.drivers.run import run_driver
+from conformance.drivers.run import end_all, run_driver
 from targets import Device, TargetUnavailable
 from targets.drivers import catalogue, present
 
@@ -79,7 +79,11 @@ def check_drivers(
                 run_mode(plan, entries, name, drivers[name], how, cache, progress) for how in chosen[name]
             ]
 
-        runs = [run for part in threads.map(one, drivers) for run in part]
+        try:
+            runs = [run for part in threads.map(one, drivers) for run in part]
+        except BaseException:
+            end_all()
+            raise
     results = [r for found, _ in runs for r in found]
     complaints = list(dict.fromkeys(sentence for _, told in runs for sentence in told))
     return results, missing, complaints

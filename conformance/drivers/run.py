@@ -16,6 +16,7 @@ from typing import Any
 from codegen.errors import UserError
 from conformance.check.identity import Identity
 from conformance.check.result import FunctionResult
+from conformance.drivers.limits import CPU_SECONDS
 from conformance.drivers.modes import Mode
 from conformance.drivers.worker import Job, backend_name
 from targets import Device, TargetUnavailable
@@ -25,6 +26,7 @@ ROOT = Path(__file__).parents[2]
 OUTSIDE = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals that someone sends to a process; a driver that fails gets another one."""
 MODULE = "conformance.drivers.worker"
+_RUNNING: set[subprocess.Popen[bytes]] = set()
 
 Report = Callable[[FunctionResult], None]
 
@@ -86,34 +88,52 @@ def run_driver(
                 "; ".join(strings(device)),
                 backend=backend_name(chosen.name, how.name),
                 stage="execute",
-                broken=f"does not execute: the driver's process ended with status {status} {last}".rstrip(),
+                broken=f"does not execute: {_end_of(status, last)}",
             )
             told(lost)
             results.append(lost)
     return DriverRun(chosen, device, how, tuple(results))
 
 
+def end_all() -> None:
+    """End the processes that run: a driver deep in its own code hears no interrupt."""
+    for process in _RUNNING.copy():
+        process.terminate()
+
+
+def _end_of(status: int, last: str) -> str:
+    """How a driver's process ended, in words; `last` is the last line that it said."""
+    if -status == signal.SIGXCPU:
+        return f"the driver took more than {CPU_SECONDS} s of processor time"
+    return f"the driver's process ended with status {status} {last}".rstrip()
+
+
 def _process(chosen: Driver, job: Job, told: Report) -> tuple[list[FunctionResult], int, str]:
     """The results of one process, its exit status, and the last line that it said."""
     found: list[FunctionResult] = []
     with tempfile.TemporaryFile() as noise:
-        with subprocess.Popen(
+        process = subprocess.Popen(
             [sys.executable, "-m", MODULE],
             env=environment_of(chosen),
             cwd=ROOT,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=noise,
-        ) as process:
-            assert process.stdin is not None and process.stdout is not None
-            with suppress(BrokenPipeError):  # it has ended already: its status says how
-                process.stdin.write(pickle.dumps(job))
-                process.stdin.close()
-            for answer in _answers(process.stdout):
-                if isinstance(answer, str):
-                    raise TargetUnavailable(answer)
-                told(answer)
-                found.append(answer)
+        )
+        _RUNNING.add(process)
+        try:
+            with process:
+                assert process.stdin is not None and process.stdout is not None
+                with suppress(BrokenPipeError):  # it has ended already: its status says how
+                    process.stdin.write(pickle.dumps(job))
+                    process.stdin.close()
+                for answer in _answers(process.stdout):
+                    if isinstance(answer, str):
+                        raise TargetUnavailable(answer)
+                    told(answer)
+                    found.append(answer)
+        finally:
+            _RUNNING.discard(process)
         noise.seek(0)
         last = noise.read().decode(errors="replace").strip().splitlines()[-1:]
     return found, process.returncode, " ".join(last)

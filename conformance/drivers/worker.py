@@ -24,6 +24,7 @@ from conformance.check.identity import Identity
 from conformance.check.prepared import prepare
 from conformance.check.replay import lane_of
 from conformance.check.result import FunctionResult
+from conformance.drivers.limits import limit_memory, limit_time
 from conformance.drivers.modes import Mode, mode
 from targets import BuildFailed, TargetUnavailable
 from targets.drivers import Driver, driver, open_driver
@@ -109,7 +110,10 @@ def main() -> None:
         pickle.dump(str(reason), results)
         results.flush()
         return
+    if not driver(job.driver).system:  # that of a GPU may reserve as much as it likes
+        limit_memory()
     for name in job.functions:
+        limit_time()
         pickle.dump(judge(library, name, on, job), results)
         results.flush()
 

@@ -4,13 +4,19 @@ Plan.
   catalogue  every entry is complete, a bad one is refused with its name, files are named after versions
   opening    what answers is held against the entry; a missing file or driver is told, not raised
   forms      every form of harness and source gives a function the same inputs, in the same order
-  process    one process per driver gives results; one that dies costs one function; replay runs one lane
+  process    one process per driver gives results; one that dies, or takes too much, costs one function;
+             an interrupt ends it; replay runs one lane
 Not covered here: whether functions keep their bounds (vair check --driver).
 """
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
+import time
 from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -23,6 +29,7 @@ from codegen.library import load_library
 from conformance import cases
 from conformance.check.identity import Identity
 from conformance.check.result import FunctionResult
+from conformance.commands import check_drivers
 from conformance.drivers import run as runner
 from conformance.drivers.modes import modes, modes_of
 from conformance.drivers.run import run_driver
@@ -204,11 +211,64 @@ def test_process_that_ends_before_it_reads_its_job_costs_the_function(
 
 def test_process_that_someone_ends_is_no_failure_of_the_driver(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runner, "MODULE", "conformance.unit.support.dying_worker")
-    monkeypatch.setenv("VAIR_TEST_SIGNAL", "yes")
+    monkeypatch.setenv("VAIR_TEST_SIGNAL", "SIGTERM")
     with pytest.raises(
         UserError, match="the process of llvmpipe-compute was ended from outside, by signal 15"
     ):
         run_driver(driver("llvmpipe-compute"), LLVMPIPE, modes()["default"], ["sin_angle"])
+
+
+def limited(limit: str) -> tuple[int, str]:
+    """Status and last line of a process that meets a limit in two ways, one after the other."""
+    code = (
+        "from conformance.drivers import limits\n"
+        f"{limit}\n"
+        "print('begins', flush=True)\n"
+        "held = []\n"
+        "while True:\n"
+        "    held = [*held, bytearray(2**24)] if len(held) < 64 else held\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "begins\n"
+    return done.returncode, (done.stderr.splitlines() or [""])[-1]
+
+
+def test_process_is_ended_where_a_function_takes_too_long() -> None:
+    assert limited("limits.limit_time(1)") == (-signal.SIGXCPU, "")
+
+
+def test_process_gets_no_more_memory_than_it_may_hold() -> None:
+    assert limited("limits.limit_memory(2**29)") == (1, "MemoryError")
+
+
+def test_driver_that_takes_too_long_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "MODULE", "conformance.unit.support.dying_worker")
+    monkeypatch.setenv("VAIR_TEST_SIGNAL", "SIGXCPU")
+    run = run_driver(driver("llvmpipe-compute"), LLVMPIPE, modes()["default"], ["sin_angle"])
+    assert run.results[0].broken == "does not execute: the driver took more than 120 s of processor time"
+
+
+def test_processes_are_ended_where_the_check_is_interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A driver deep in its own code hears no interrupt: it would go on, and hold its memory, alone."""
+    monkeypatch.setattr(runner, "MODULE", "conformance.unit.support.dying_worker")
+    monkeypatch.setenv("VAIR_TEST_SIGNAL", "none")
+    monkeypatch.setattr(check_drivers, "find_drivers", lambda _: ({"llvmpipe-compute": LLVMPIPE}, []))
+    started: list[Future[Any]] = []
+
+    class Interrupted(ThreadPoolExecutor):
+        def map(self, function: Any, *arguments: Any, **_: Any) -> Any:  # type: ignore[override]
+            started.extend(self.submit(function, name) for name in arguments[0])
+            while not runner._RUNNING:
+                time.sleep(0.01)
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(check_drivers, "ThreadPoolExecutor", Interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        check_drivers.check_drivers(
+            check_drivers.Plan(load_library(), ["sin_angle"]), ("llvmpipe-compute",), ()
+        )
+    assert "was ended from outside, by signal 15" in str(started[0].exception())
+    assert not runner._RUNNING
 
 
 def test_replay_runs_one_lane() -> None:
