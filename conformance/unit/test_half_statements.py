@@ -1,6 +1,6 @@
 """Half forms of every kind of statement and expression compute what the source says.
 
-Plan. Small dyadic inputs, on which every operation is exact in half precision: results of a half form are those
+Plan. Small dyadic inputs, on which every operation is exact in half precision: half forms give the results
 of the source in float32, bit for bit, also where some parameters stay f32; every version is well-formed, and
 what is no longer f32 is f16. Values that only f32 holds show where f32 is kept.
 """
