@@ -1,4 +1,4 @@
-"""A worker whose driver takes the process down, or never answers; VAIR_TEST_SIGNAL names the signal, if any."""
+"""A worker whose driver takes the process down or never answers; VAIR_TEST_SIGNAL names a signal, if any."""
 
 import os
 import signal
