@@ -21,6 +21,8 @@ class UserError(Exception):
 
 
 def _one_line(text: str) -> str:
+    if text.isprintable() and len(text) <= LONGEST:
+        return text
     shown = "".join(
         c if c.isprintable() else c.encode("unicode_escape").decode() for c in text[: LONGEST + 1]
     )

@@ -6,7 +6,6 @@ execute(library, maps.function, {**maps.inputs(), "l": l, "v": v}, runtime)
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from codegen.documents import read_json
 from codegen.errors import UserError
 from codegen.factors.homomorphic import Factors
 from codegen.factors.waterloo import read_waterloo
@@ -21,6 +21,7 @@ from codegen.maps.image import read_pixels
 
 Map = npt.NDArray[np.float32]
 MANIFEST = "factors.json"
+LARGEST = float(np.finfo(np.float32).max)
 SHADES = {"": "factored_shade", "along": "factored_strand_shade", "across": "factored_satin_shade"}
 """The angles that the factor r follows -> the function of the library that reads the factors."""
 
@@ -75,11 +76,12 @@ def read_factor_maps(path: Path) -> FactorMaps:
 
 def _manifest(path: Path) -> dict[str, Any]:
     try:
-        told = json.loads(path.read_text(encoding="utf-8"))
+        told = read_json(path)
         scale, angles = [float(x) for x in told["scale"]], told["angles"]
-    except (ValueError, KeyError, TypeError, OSError):
+    except (ValueError, KeyError, TypeError, OverflowError):
         raise UserError(f'{path}: not what "vair factor" writes; write the factors again') from None
-    if len(scale) not in (1, 3) or angles not in SHADES:
+    usable = all(0.0 < x <= LARGEST for x in scale)
+    if len(scale) not in (1, 3) or not usable or angles not in list(SHADES):
         raise UserError(f'{path}: not what "vair factor" writes; write the factors again')
     return {"name": told.get("name", path.parent.name), "scale": scale, "angles": angles}
 

@@ -99,7 +99,7 @@ def _arrays(path: Path) -> tuple[Array, Array, Array]:
             for name in ("l", "v", "value"):
                 if name not in data:
                     raise UserError(f'{path.name}: the array "{name}" is missing{nearest(name, data.files)}')
-            l, v, value = (np.asarray(data[name], np.float64) for name in ("l", "v", "value"))
+            l, v, value = (_floats(path, name, data[name]) for name in ("l", "v", "value"))
     except (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error) as e:
         reason = (str(e) or "it is damaged").splitlines()[0]
         raise UserError(f"{path.name}: not a readable .npz file: {reason}") from None
@@ -107,11 +107,19 @@ def _arrays(path: Path) -> tuple[Array, Array, Array]:
     return l, v, value.reshape(len(value), math.prod(value.shape[1:]))
 
 
+def _floats(path: Path, name: str, values: npt.NDArray[Any]) -> Array:
+    if values.dtype.kind not in "fiub":
+        raise UserError(f'{path.name}: the array "{name}" holds {values.dtype.name} instead of numbers')
+    with np.errstate(invalid="ignore"):  # of a signalling NaN
+        return values.astype(np.float64)
+
+
 def _checked(path: Path, l: Array, v: Array, value: Array) -> Samples:
     if not l.shape == v.shape == (len(value), 3) or value.shape[1] not in (1, 3):
         raise UserError(f"{path.name}: l and v have 3 columns, value has 1 or 3, and all have as many rows")
     for name, w in (("l", l), ("v", v)):
-        length = np.linalg.norm(w, axis=1)
+        with np.errstate(over="ignore"):  # an infinite length is none of 1 either
+            length = np.linalg.norm(w, axis=1)
         wrong = ~(np.abs(length - 1.0) <= UNIT) | (w[:, 2] < 0.0)
         if wrong.any():
             row = int(np.flatnonzero(wrong)[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,6 +26,7 @@ MOST_SUBDIVIDED = 1 << 19
 """Drawn: the fins of more would not fit the 256 MiB that WebGPU promises for a buffer."""
 FARTHEST = 1.0e3
 """Coordinates up to which shell_offset declares its error."""
+_SILENT = logging.NullHandler()
 FLATTEST = 1.0e-12
 """Twice the area of a face below which it counts as degenerate, as a share of the mesh's size squared."""
 
@@ -66,6 +68,8 @@ def load_mesh(path: Path) -> trimesh.Trimesh:
         raise UserError(f"{path}: cannot be read as a mesh ({_reason(error)})") from error
     if not isinstance(loaded, mesh_package.Trimesh) or len(loaded.faces) == 0:
         raise UserError(f"{path}: holds no triangles")
+    if loaded.vertices.shape[1] != 3:
+        raise UserError(f"{path}: its vertices are not of three coordinates")
     if not np.isfinite(loaded.vertices).all():
         raise UserError(f"{path}: has a vertex that is not finite")
     if not ((loaded.faces >= 0) & (loaded.faces < len(loaded.vertices))).all():
@@ -167,6 +171,8 @@ def require_trimesh() -> Any:
         import trimesh
     except ImportError:
         raise UserError("meshes need the package trimesh; install vair[render]") from None
+    # Without a handler Python prints what it logs; what matters of it becomes a sentence.
+    logging.getLogger("trimesh").addHandler(_SILENT)
     return trimesh
 
 

@@ -51,7 +51,8 @@ def read_strands(path: Path) -> Doubles:
     if offset < HEADER_BYTES or offset + 16 * strands * points > len(data):
         raise UserError(f"{path}: ends before its {strands} strands of {points} points do")
     rows = np.frombuffer(data, "<f4", 4 * strands * points, offset).reshape(strands, points, 4)
-    found: Doubles = rows[..., :3].astype(np.float64)
+    with np.errstate(invalid="ignore"):  # of a signalling NaN
+        found: Doubles = rows[..., :3].astype(np.float64)
     if not np.isfinite(found).all():
         raise UserError(f"{path}: has a point that is not finite")
     farthest = float(np.abs(found).max())

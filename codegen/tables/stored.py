@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
+from codegen.documents import read_json
 from codegen.errors import UserError
 from codegen.maps.image import read_pixels
 
@@ -23,12 +23,12 @@ def read_angle_table(folder: Path) -> npt.NDArray[np.float32]:
     if not path.is_file():
         raise UserError(f'cannot read "{folder}": there is no {MANIFEST} in it')
     try:
-        told = json.loads(path.read_text(encoding="utf-8"))
+        told = read_json(path)
         axes = [
             (str(a["name"]), str(a["warp"]), float(a["low"]), float(a["high"]))
             for a in (told["x"], told["y"])
         ]
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, OverflowError):
         raise UserError(f'{path}: not what "vair table" writes; write the table again') from None
     if any(axis[1:] != ("angle", -1.0, 1.0) for axis in axes):
         given = " and ".join(f"{name} by {warp} from {low:g} to {high:g}" for name, warp, low, high in axes)

@@ -6,6 +6,7 @@ import dataclasses
 import typing
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -60,15 +61,21 @@ def merge(paths: Iterable[Path]) -> Merged:
 
 def check_types(value: Any) -> None:
     """Raise TypeError where a field of a dataclass, or of those in it, holds no text or number as it says."""
-    hints = typing.get_type_hints(type(value))
+    kind: Any = type(value)
+    hints = _hints(kind)
     for field in dataclasses.fields(value):
         held, hint = getattr(value, field.name), hints[field.name]
-        kind = PLAIN.get(hint)
-        if kind is not None and not (isinstance(held, kind) and isinstance(held, bool) == (hint is bool)):
+        plain = PLAIN.get(hint)
+        if plain is not None and not (isinstance(held, plain) and isinstance(held, bool) == (hint is bool)):
             raise TypeError(f"{field.name}: {held!r} is no {hint.__name__}")
         for part in held if isinstance(held, list | tuple) else [held]:
             if dataclasses.is_dataclass(part):
                 check_types(part)
+
+
+@cache
+def _hints(kind: Any) -> dict[str, Any]:
+    return typing.get_type_hints(kind)
 
 
 def lacking(shards: set[Shard]) -> list[str]:

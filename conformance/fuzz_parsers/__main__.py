@@ -1,11 +1,13 @@
 """`python -m conformance.fuzz_parsers NAME --runs N`: fuzz one reader, guided by coverage (atheris).
 
 A finding is printed with the bytes that make it again; --replay HEX runs these alone. Without atheris, or
-with --blind, bytes are drawn from a seed.
+with --blind, bytes are drawn from a seed. What coverage found is kept in build/fuzz_parsers/NAME, from which
+the next run goes on; --record adds the run to results.json.
 """
 
 from __future__ import annotations
 
+import datetime
 import os
 import random
 import shutil
@@ -13,37 +15,80 @@ import sys
 import tempfile
 import time
 import traceback
+import warnings
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import click
 
+from conformance.fuzz_parsers import readers, record
+
 LONGEST = 1024
 """Bytes of one input."""
+CORPUS = readers.ROOT / "build" / "fuzz_parsers"
+
+
+@dataclass
+class Run:
+    """What one run of this program did.
+
+    stored  files of earlier runs that come first and do not count again
+    """
+
+    name: str
+    runs: int
+    seconds: float
+    stored: int = 0
+    said: Counter[bool] = field(default_factory=Counter)
+    begin: float = field(default_factory=time.monotonic)
+    cpu: float = field(default_factory=time.process_time)
+
+    def count(self, refused: bool) -> None:
+        """One file more."""
+        if self.stored:
+            self.stored -= 1
+        else:
+            self.said[refused] += 1
+
+    @property
+    def over(self) -> bool:
+        """Whether the files or the time are used up."""
+        took = time.monotonic() - self.begin
+        return self.said.total() >= self.runs or 0 < self.seconds < took
 
 
 @click.command()
 @click.argument("name")
 @click.option("--runs", default=10_000, show_default=True, help="How many files are read.")
-@click.option("--seconds", default=0, help="End after this time.  [default: when all runs are done]")
-@click.option("--seed", default=1, show_default=True)
+@click.option("--seconds", default=0.0, help="End after this time.  [default: when all runs are done]")
+@click.option("--seed", type=int, help="[default: 1; with --record the first that was not used]")
 @click.option("--replay", help="Bytes of a finding, in hex.")
 @click.option("--blind", is_flag=True, help="Draw bytes from the seed instead of following coverage.")
-def main(name: str, runs: int, seconds: int, seed: int, replay: str | None, blind: bool) -> None:
-    """Fuzz the reader NAME: scene, picture, lock, results, kit, waterloo, samples or mesh."""
+@click.option("--record", "keep", is_flag=True, help="Add the run to results.json and the table.")
+def main(
+    name: str, runs: int, seconds: float, seed: int | None, replay: str | None, blind: bool, keep: bool
+) -> None:
+    """Fuzz the reader NAME, such as scene, lock or mesh; README.md lists them."""
+    if name not in readers.MODULES:
+        sys.exit(f"fuzz_parsers: no reader {name}; there are {', '.join(readers.MODULES)}")
     atheris = None if blind or replay is not None else _atheris()
     if atheris is not None:
-        with atheris.instrument_imports(include=["codegen", "conformance"]):
+        with atheris.instrument_imports(include=list(readers.MODULES[name])):
             from conformance.fuzz_parsers import mutation, parsers, sandbox
     else:
         from conformance.fuzz_parsers import mutation, parsers, sandbox
-    if name not in parsers.PARSERS:
-        sys.exit(f"fuzz_parsers: no reader {name}; there are {', '.join(parsers.PARSERS)}")
+    warnings.filterwarnings(
+        "error", module="codegen|conformance"
+    )  # a person would see them beside a sentence
     parser = parsers.PARSERS[name]()
-    said: Counter[bool] = Counter()
-    begin = time.monotonic()
+    way = "blind" if atheris is None else "by_coverage"
+    before = record.recorded(name, readers.code_hash(name))
+    if seed is None:
+        seed = before.seeds[way] + 1 if keep else 1
+    run = Run(name, runs, seconds)
     memory = Path("/dev/shm")
     with tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None) as folder:
         box = sandbox.Sandbox(Path(folder))
@@ -51,46 +96,47 @@ def main(name: str, runs: int, seconds: int, seed: int, replay: str | None, blin
         def one(data: bytes) -> None:
             file = mutation.mutated(data, parser.seeds, parser.trees, parser.write)
             try:
-                said[bool(sandbox.examine(box, parser.read, parser.file, file))] += 1
+                run.count(bool(sandbox.examine(box, parser.read, parser.file, file)))
             except BaseException:
                 traceback.print_exc()
                 print(f"finding: --replay {data.hex()}\nfile: {file[:2000]!r}", flush=True)
                 raise
 
-        def over() -> bool:
-            took = time.monotonic() - begin
-            if said.total() < runs and not 0 < seconds < took:
-                return False
-            print(f"{name}: {said.total()} files, {said[False]} taken, {said[True]} refused, {took:.0f} s")
-            return True
+        def end() -> None:
+            taken, refused = run.said[False], run.said[True]
+            cpu = time.process_time() - run.cpu
+            print(f"{name}: {run.said.total()} files, {taken} taken, {refused} refused, {cpu:.0f} s, {way}")
+            if keep:
+                today = datetime.date.today().isoformat()
+                record.keep(name, before.with_run(way, taken, refused, cpu, today), list(readers.MODULES))
 
         if replay is not None:
             one(bytes.fromhex(replay))
-            print(f"{name}: {'taken' if said[False] else 'refused'}")
+            print(f"{name}: {'taken' if run.said[False] else 'refused'}")
         elif atheris is None:
-            _draw(one, over, seed)
+            drawn = random.Random(seed)
+            while not run.over:
+                one(drawn.randbytes(drawn.randrange(LONGEST)))
+            end()
         else:
-            _follow(atheris, one, over, seed, folder)
-
-
-def _draw(one: Callable[[bytes], None], over: Callable[[], bool], seed: int) -> None:
-    """Inputs of seeded bytes."""
-    drawn = random.Random(seed)
-    while not over():
-        one(drawn.randbytes(drawn.randrange(LONGEST)))
+            _follow(atheris, one, run, end, seed, folder)
 
 
 def _follow(
-    atheris: Any, one: Callable[[bytes], None], over: Callable[[], bool], seed: int, folder: str
+    atheris: Any, one: Callable[[bytes], None], run: Run, end: Callable[[], None], seed: int, folder: str
 ) -> None:
     """Inputs that follow coverage. libFuzzer never returns, so the process ends here.
 
     folder  where it leaves its own copy of a finding; what is printed replays it
     """
+    corpus = CORPUS / run.name
+    corpus.mkdir(parents=True, exist_ok=True)
+    run.stored = sum(1 for _ in corpus.iterdir())
 
     def counted(data: bytes) -> None:
         one(data)
-        if over():
+        if run.over:
+            end()
             sys.stdout.flush()
             shutil.rmtree(folder)
             os._exit(0)
@@ -101,9 +147,10 @@ def _follow(
         "-len_control=0",
         "-verbosity=0",
         f"-artifact_prefix={folder}/",
+        "-timeout=0",
+        "-rss_limit_mb=4096",
     ]
-    options += ["-timeout=0", "-rss_limit_mb=4096"]
-    atheris.Setup([sys.argv[0], *options], counted)
+    atheris.Setup([sys.argv[0], *options, str(corpus)], counted)
     atheris.Fuzz()
 
 

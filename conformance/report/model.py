@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from codegen.documents import read_json
 from codegen.errors import UserError
 from codegen.library import Library
 from codegen.version import VERSION
 from conformance.bench.record import SCHEMA as RESULT_SCHEMA
 from conformance.bench.record import machine_data
+from conformance.report.agreement import agreement
 from conformance.report.pareto import Point, front
 
 SCHEMA = 1
 UNITS = ("ulp", "steps")
 """Units of the error: float32's spacing at the value, and steps of an 8-bit channel."""
+DAMAGED = (ArithmeticError, AttributeError, IndexError, KeyError, TypeError, ValueError)
+"""What a report raises whose values are others than vair report writes."""
 HALF_STEP = 0.5
 """What rounding to the nearest 8-bit step hides, in steps."""
 RESOLVED = 0.01
@@ -110,13 +113,17 @@ def read_report(path: Path) -> dict[str, Any]:
     """A report.json, or a folder that holds one; raises UserError for anything else."""
     file = path / "report.json" if path.is_dir() else path
     try:
-        data = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        raise UserError(f'"{file}" is no report.json that can be read') from None
+        data = read_json(file)
+    except UserError as e:
+        raise UserError(f"{e}; vair report writes a report.json into its folder") from None
     drivers = data.get("drivers") if isinstance(data, dict) else None
     if not isinstance(drivers, list) or data.get("schema") != SCHEMA:
         raise UserError(f'"{file}" is no report of schema {SCHEMA}; write it anew with vair report')
-    if any(r.get("schema") != RESULT_SCHEMA for r in drivers):
+    if any(not isinstance(r, dict) or r.get("schema") != RESULT_SCHEMA for r in drivers):
         raise UserError(f'"{file}" holds results of another schema than {RESULT_SCHEMA}; measure anew')
+    try:
+        agreement(drivers, drivers)  # takes all that a comparison needs
+    except DAMAGED as e:
+        raise UserError(f'"{file}" is damaged: a result lacks or misspells {e}') from None
     found: dict[str, Any] = data
     return found

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -10,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from codegen.documents import read_json
 from codegen.errors import UserError
 from codegen.library import default_root
 from conformance.bench.record import short_name
@@ -28,6 +28,8 @@ COLUMNS = (
     "Error in half steps",
     "Predicted",
 )
+DAMAGED = (ArithmeticError, AttributeError, IndexError, KeyError, TypeError, ValueError)
+"""What a report raises whose values are others than vair scene writes."""
 DASH = "\u2013"
 
 
@@ -62,11 +64,18 @@ def read_scene_report(path: Path) -> dict[str, Any]:
     """
     file = path / "report.json" if path.is_dir() else path
     try:
-        data = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        raise UserError(f'"{file}" is no report.json that can be read; write it with vair scene') from None
+        data = read_json(file)
+    except UserError as e:
+        raise UserError(f"{e}; vair scene writes a report.json into its folder") from None
     if not isinstance(data, dict) or data.get("schema") != SCHEMA or "scene" not in data:
         raise UserError(f'"{file}" is no report of vair scene of schema {SCHEMA}')
+    try:
+        return _figures(data)
+    except DAMAGED as e:
+        raise UserError(f'"{file}" is damaged: it lacks or misspells {e}') from None
+
+
+def _figures(data: Mapping[str, Any]) -> dict[str, Any]:
     scene, parameters = data["scene"], data["parameters"]
     return {
         "name": scene["name"],

@@ -318,11 +318,13 @@ def test_written_factors_are_read_as_maps(angles: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "{}", '{"scale": [1, 2], "angles": ""}', '{"scale": [1], "angles": "up"}']
+    "text",
+    ["", "{}", '{"scale": [1, 2], "angles": ""}', '{"scale": [1], "angles": "up"}']
+    + [f'{{"scale": [{scale}], "angles": ""}}' for scale in ("1e39", "0", "-1", "NaN")],
 )
 def test_a_foreign_description_gets_one_sentence(text: str, tmp_path: Path) -> None:
     (tmp_path / "factors.json").write_text(text)
-    with pytest.raises(UserError, match='not what "vair factor" writes'):
+    with pytest.raises(UserError, match=r'not what "vair factor" writes|is not valid JSON'):
         read_factor_maps(tmp_path)
 
 
