@@ -19,23 +19,17 @@ from codegen.evaluate import evaluate
 from codegen.execute import execute
 from codegen.intervals import DEFAULT_TABLES, permitted
 from codegen.library import load_library
-from conformance.reference import reference_for
-from conformance.reference.lobes import LOBES
 from conformance.textures.environments import (
     CLEAR,
     SIZES,
     corners,
     looks,
     paraboloid,
-    parameters,
     single_texel,
-    views,
 )
+from conformance.textures.readers import LANES, LOOKS, SEED, estimator_inputs, lobe_parameters, within
 from targets import TimedRuntime
 
-SEED = 20260807
-LOOKS = 600
-LANES = 40
 BRIGHTEST = 1e30
 """Radiance far beyond any map's: a sum of weights must not overflow."""
 LIBRARY = load_library()
@@ -48,38 +42,6 @@ SURFACES = [name for name in ESTIMATORS if not name.endswith("_strand")]
 def usual(name: str, when: bool) -> Any:
     """A case of a normal run, or a nightly one."""
     return name if when else pytest.param(name, marks=pytest.mark.nightly)
-
-
-def wide(value: Any) -> Any:
-    """Inputs as the reference takes them."""
-    if isinstance(value, dict):
-        return {name: wide(part) for name, part in value.items()}
-    return value if isinstance(value, list) or value.dtype == np.uint32 else value.astype(np.float64)
-
-
-def expected(name: str, inputs: dict[str, Any]) -> Any:
-    """The reference's values."""
-    return reference_for(name)(*[wide(inputs[p.name]) for p in LIBRARY.function(name).parameters])
-
-
-def within(name: str, inputs: dict[str, Any], got: Any) -> bool:
-    """Whether every result is finite and inside the declared bound, in units of the largest texel."""
-    (bound,) = LIBRARY.bounds[name]
-    largest = max(1.0, *(float(level.max()) for level in inputs["env"]))
-    exact = expected(name, inputs)
-    size = np.maximum(np.abs(exact) / largest, bound.floor) if bound.measure == "relative" else 1.0
-    return bool(np.isfinite(got).all() and (np.abs(got - exact) <= bound.bound * largest * size).all())
-
-
-def own(name: str) -> tuple[str, ...]:
-    """The parameters of an estimator's lobe."""
-    return next(LOBES[lobe] for lobe in sorted(LOBES, key=len, reverse=True) if name.endswith(f"_{lobe}"))
-
-
-def drawn(name: str, kind: str, size: int = 32) -> dict[str, Any]:
-    """A map and views for an estimator."""
-    shaded: dict[str, Any] = views(LANES, SEED)
-    return {"env": paraboloid(size, kind, SEED), **shaded, **parameters(own(name), LANES, SEED)}
 
 
 @pytest.mark.parametrize("kind", ["random", "hot"])
@@ -134,14 +96,14 @@ def test_prefiltered(runtime: TimedRuntime) -> None:
 
 @pytest.mark.parametrize("name", [usual(n, "guarded" not in n) for n in ESTIMATORS])
 def test_estimators_in_float32(name: str) -> None:
-    inputs = drawn(name, "random")
+    inputs = estimator_inputs(name, "random")
     assert within(name, inputs, evaluate(LIBRARY, name, inputs))
 
 
 @pytest.mark.parametrize("name", [usual(n, n in USUAL) for n in ESTIMATORS])
 def test_estimators(name: str, runtime: TimedRuntime) -> None:
     for kind in ("random", "hot", "black"):
-        inputs = drawn(name, kind)
+        inputs = estimator_inputs(name, kind)
         got = np.asarray(execute(LIBRARY, name, inputs, runtime))
         assert within(name, inputs, got)
         assert kind != "black" or not got.any()
@@ -153,20 +115,22 @@ def test_estimators(name: str, runtime: TimedRuntime) -> None:
 @pytest.mark.parametrize("name", [usual(n, n in USUAL) for n in ESTIMATORS])
 def test_corners_of_the_domain_stay_finite(name: str, runtime: TimedRuntime) -> None:
     brightest = [level * np.float32(BRIGHTEST) for level in paraboloid(8, "random", SEED)]
-    inputs = {"env": brightest, **corners(own(name), 10 * LANES, SEED)}
+    inputs = {"env": brightest, **corners(lobe_parameters(name), 10 * LANES, SEED)}
     assert np.isfinite(np.asarray(execute(LIBRARY, name, inputs, runtime))).all()
 
 
 def test_maps_of_one_texel(runtime: TimedRuntime) -> None:
     name = "env_filtered_phong"
     for env in (single_texel(0.5), paraboloid(1, "random", SEED)):
-        inputs = {**drawn(name, "random"), "env": env}
+        inputs = {**estimator_inputs(name, "random"), "env": env}
         assert within(name, inputs, execute(LIBRARY, name, inputs, runtime))
 
 
 def test_more_samples_than_most_are_most(runtime: TimedRuntime) -> None:
     inputs = {
-        name: value for name, value in drawn("env_filtered_phong", "random", 8).items() if name != "samples"
+        name: value
+        for name, value in estimator_inputs("env_filtered_phong", "random", 8).items()
+        if name != "samples"
     }
     counts = np.resize(np.array([4096, 4097, 2**32 - 1], np.uint32), LANES)
     got = np.asarray(execute(LIBRARY, "env_filtered_phong", {**inputs, "samples": counts}, runtime))

@@ -28,40 +28,12 @@ from conformance.check.features import applies
 from conformance.factored.published import SATIN, WATERLOO, cosine_weighted, viewer
 from conformance.reference import ambiguous, reference_for
 from conformance.textures.filtering import declared
+from conformance.textures.readers import SHADES, cosines, directions, factors
 from conformance.unit.support.tolerances import tolerance
 from targets import TimedRuntime
 
 Array = npt.NDArray[Any]
-SEED = 20261122
 COUNT = 20_000
-SHADES = ("factored_shade", "factored_strand_shade", "factored_satin_shade")
-
-
-def cosines() -> Array:
-    """Pairs of cosines: uniform in angle, uniform, close to the ends and to 0, and exactly there."""
-    rng = np.random.default_rng(SEED)
-    angle = np.sin(rng.uniform(-np.pi / 2, np.pi / 2, (2, COUNT)))
-    ends = np.sign(rng.uniform(-1.0, 1.0, (2, COUNT))) * (1.0 - 2.0 ** -rng.uniform(1.0, 24.0, (2, COUNT)))
-    small = rng.uniform(-1.0, 1.0, (2, COUNT)) * 2.0 ** -rng.uniform(1.0, 60.0, (2, COUNT))
-    corners = np.array([(x, y) for x in (-1.0, -0.0, 0.0, 1.0) for y in (-1.0, -0.0, 0.0, 1.0)]).T
-    mixed = np.stack([ends[0], angle[1]])
-    return np.concatenate([angle, ends, small, mixed, corners], axis=1).astype(np.float32)
-
-
-def directions(count: int) -> tuple[Array, Array]:
-    """Pairs of unit vectors over the sphere, most of them above the surface, in float32."""
-    w = np.random.default_rng(SEED).normal(size=(2, count, 3))
-    w[:, : count * 3 // 4, 2] = np.abs(w[:, : count * 3 // 4, 2])
-    w /= np.linalg.norm(w, axis=-1, keepdims=True)
-    return w[0].astype(np.float32), w[1].astype(np.float32)
-
-
-def random_factors(name: str) -> dict[str, Any]:
-    """Factors of one shade with every texel by itself, and a scale of 1."""
-    rng = np.random.default_rng(SEED)
-    sizes = {"p": 64, "q": 33, **({"r": 48} if name != "factored_shade" else {})}
-    found: dict[str, Any] = {k: [rng.random((n, n, 4)).astype(np.float32)] for k, n in sizes.items()}
-    return {**found, "scale": np.ones(3, np.float32)}
 
 
 def test_the_strand_cosine_from_a_table(runtime: TimedRuntime) -> None:
@@ -69,7 +41,7 @@ def test_the_strand_cosine_from_a_table(runtime: TimedRuntime) -> None:
     x, y, function = two_arguments(library, "strand_cosine", {})
     table = made(replace(x, warp="angle"), replace(y, warp="angle"), function, 256, 256)
     levels = [np.repeat(table.values[:, :, None], 4, axis=2)]
-    cos_l, cos_v = cosines()
+    cos_l, cos_v = cosines(COUNT)
     inputs = {"table": levels, "cos_l": cos_l, "cos_v": cos_v}
     got = np.asarray(execute(library, "strand_cosine_table", inputs, runtime))
     l, v = cos_l.astype(np.float64), cos_v.astype(np.float64)
@@ -86,10 +58,10 @@ def test_the_strand_cosine_from_a_table(runtime: TimedRuntime) -> None:
 
 
 @pytest.mark.parametrize("name", SHADES)
-def test_shades_of_random_factors(name: str, runtime: TimedRuntime) -> None:
+def test_shades_of_factors(name: str, runtime: TimedRuntime) -> None:
     library = load_library()
     l, v = directions(COUNT)
-    inputs = {**random_factors(name), "l": l, "v": v}
+    inputs = {**factors(name), "l": l, "v": v}
     got = np.asarray(execute(library, name, inputs, runtime))
     assert np.isfinite(got).all()
     assert (got[l[:, 2] <= 0.0] == 0.0).all()
@@ -114,7 +86,7 @@ def test_degenerate_directions(name: str, runtime: TimedRuntime) -> None:
     rows = [(flat, [-0.6, -0.8, 0.0]), (up, down), (down, up), (slanted, [-0.48, -0.6, -0.64]), (up, flat)]
     rows += [(flat, up), (up, [1.0, 0.0, 0.0]), (up, [-1.0, -0.0, -0.0]), (slanted, [0.6, 0.48, -0.64])]
     l, v = (np.array(column, np.float32) for column in zip(*rows, strict=True))
-    inputs = {**random_factors(name), "l": l, "v": v}
+    inputs = {**factors(name), "l": l, "v": v}
     got = np.asarray(execute(library, name, inputs, runtime))
     assert np.isfinite(got).all()
     dark = l[:, 2] <= 0.0
@@ -127,7 +99,7 @@ def test_degenerate_directions(name: str, runtime: TimedRuntime) -> None:
 def test_light_and_viewer_may_be_exchanged(runtime: TimedRuntime) -> None:
     l, v = directions(2000)
     l, v = (np.where(w[:, 2:] < 0.0, -w, w) for w in (l, v))
-    inputs = random_factors("factored_shade")
+    inputs = factors("factored_shade")
     there, back = (
         np.asarray(execute(load_library(), "factored_shade", {**inputs, "l": a, "v": b}, runtime))
         for a, b in ((l, v), (v, l))

@@ -1,7 +1,8 @@
 """Mutants of the library under `vair check`: the changed source goes through the front end.
 
 A mutant is first checked on few points, and on more points and in its callers where that shows nothing;
-last, it may not lose what WGSL guarantees of the function (conformance.guarantees).
+last, it may not lose what WGSL guarantees of the function (conformance.guarantees). Functions that read maps
+are held to their references on maps of conformance.textures instead.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from conformance.mutation.isolated import KILLED, REFUSED, SURVIVED
 from conformance.mutation.plan import Group, Subject, tree_of
 from conformance.mutation.sites import Mutant
 from conformance.reference import PROPERTY_ONLY
+from conformance.textures import readers
 
 TABLE = "wgsl"
 """Whose guarantees a mutant must not lose: many a guard is there for what other targets may do."""
@@ -60,7 +62,7 @@ def callers() -> dict[str, list[str]]:
 
 def public_users(name: str, limit: int) -> list[str]:
     """The public functions that reach a function, nearest first; the function itself if it is public."""
-    public = load_library().public
+    public = load_library().documented
     found: list[str] = []
     waiting, seen = [name], {name}
     while waiting:
@@ -82,7 +84,12 @@ def points(name: str, uniform: int, family: int) -> list[Draw]:
 
 def notices(library: Library, names: Iterable[str], uniform: int, family: int) -> bool:
     """Whether the check of any of these functions fails."""
-    return any(_fails(library, name, points(name, uniform, family)) for name in names)
+    return any(
+        not readers.passes(library, name)
+        if load_library().function(name).reads_textures
+        else _fails(library, name, points(name, uniform, family))
+        for name in names
+    )
 
 
 def _fails(library: Library, name: str, draws: list[Draw]) -> bool:
@@ -151,7 +158,9 @@ def judge(group: Group, subject: Subject, mutant: Mutant) -> str:
     if notices(library, own, uniform, family):
         return KILLED
     uniform, family, _ = group.first
-    callers_notice = notices(library, others[:more], uniform, family)
-    if callers_notice or any(loses_guarantees(library, name, points(name, uniform, family)) for name in own):
+    if notices(library, others[:more], uniform, family):
+        return KILLED
+    drawn = [name for name in own if not load_library().function(name).reads_textures]
+    if any(loses_guarantees(library, name, points(name, uniform, family)) for name in drawn):
         return KILLED
     return SURVIVED
