@@ -22,7 +22,6 @@ from codegen.version import VERSION
 FORMAT = 1
 """Counts incompatible changes of fur.json."""
 BUFFERS = "fur.bin"
-ALIGNMENT = 4
 
 
 def kit_files(

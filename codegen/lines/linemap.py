@@ -16,7 +16,6 @@ from codegen.version import VERSION
 
 FORMAT = 1
 COLUMNS = ("line", "function", "file", "source_line")
-LINE_DIRECTIVE = "#line"
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 
-from codegen.ir.types import VALUE_TYPES, Type, Vector, vector_of
+from codegen.ir.types import VALUE_TYPES, Vector, vector_of
 from codegen.ops.registry import BUILTINS, OPERATORS
 
 _HEADER = '''\
@@ -85,11 +85,6 @@ _DUNDERS = {
     "+": "add", "-": "sub", "*": "mul", "/": "truediv", "//": "floordiv", "%": "mod",
     "&": "and", "|": "or", "^": "xor",
 }  # fmt: skip
-
-
-def python_name(type_: Type) -> str:
-    """The name of a type in Python annotations."""
-    return type_.name
 
 
 def generate() -> str:
