@@ -17,6 +17,7 @@ def read(**changes: Any) -> Bound:
 
 def test_entry_is_read_with_its_defaults() -> None:
     assert read() == Bound("probe", "absolute", 1e-6, "all", "here", 0.0, {}, "", ())
+    assert read() == Bound("probe", "absolute", 1e-6, "all", "here")
 
 
 def test_every_key_arrives() -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from codegen.errors import UserError
 from codegen.kernels import kernel
 from codegen.library import load_library
 from conformance import cases
@@ -48,6 +49,14 @@ def test_draws_take_every_family_and_can_be_repeated(name: str) -> None:
         assert {len(c) for c in columns(d.inputs)} == {d.count}
     assert [d.count for d in found if d.family in ("uniform", "domain_ends")] == [30, 20]
     assert {d.seed for d in found} == {engine.SEED}
+
+
+def test_maps_are_not_drawn() -> None:
+    reading = [f for f in load_library().documented.values() if f.reads_textures]
+    assert reading
+    for function in reading:
+        with pytest.raises(UserError, match=f"^{function.name} reads maps: "):
+            engine.draw(function, "uniform", 10, engine.SEED)
 
 
 def test_check_draws_for_itself() -> None:
