@@ -93,6 +93,10 @@ def multiply(a: Enclosure, b: Enclosure) -> Enclosure:
             np.where(exact, low, np.maximum(_below(low), 0.0)),
             np.where(exact | (far == 0.0), high, _above(high)),
         )
+    elif a.is_point and a.short and not b.short:
+        return _times(b, a.low)
+    elif b.is_point and b.short and not a.short:
+        return _times(a, b.low)
     else:
         corners = (a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high)
         low = np.minimum(np.minimum(corners[0], corners[1]), np.minimum(corners[2], corners[3]))
@@ -101,6 +105,15 @@ def multiply(a: Enclosure, b: Enclosure) -> Enclosure:
         return Enclosure(low, high) if low is high else _checked(low, high)
     exact = _is_zero(a) | _is_zero(b) | (_is_short(a) & _is_short(b))
     return _checked(np.where(exact, low, _below(low)), np.where(exact, high, _above(high)))
+
+
+def _times(a: Enclosure, number: Array) -> Enclosure:
+    """An enclosure times a number of 24 bits. An end that has 24 bits too stays exact: 1 in 1 - exp(-x)."""
+    ends = a.low * number, a.high * number
+    exact = [(number == 0.0) | (end.astype(np.float32) == end) for end in (a.low, a.high)]
+    below = [np.where(e, x, _below(x)) for x, e in zip(ends, exact, strict=True)]
+    above = [np.where(e, x, _above(x)) for x, e in zip(ends, exact, strict=True)]
+    return _checked(np.where(number < 0.0, below[1], below[0]), np.where(number < 0.0, above[0], above[1]))
 
 
 def _is_short(a: Enclosure) -> Array:

@@ -46,6 +46,8 @@ OPERATIONS = (
     "a - b",
     "a * b",
     "(a + b) * (a + b)",
+    "a * exp(b)",
+    "a * (1.0 - exp(-80.0 * abs(b)))",
     "a / b",
     "(a + b) / (a * b)",
     "sqrt(abs(a + b))",
@@ -92,6 +94,21 @@ def test_exact_operations_stay_points(tmp_path: Path) -> None:
     for x in leaves(value):
         assert isinstance(x, Enclosure)
         assert np.array_equal(x.low, x.high)
+
+
+def test_ends_of_24_bits_stay_exact(tmp_path: Path) -> None:
+    """A little less than a number, as k (1 - exp(-x)) is, cannot pass for more than it."""
+    text = "vec4(a * (1.0 - exp(b)), a * (exp(b) - 1.0), a + a * (1.0 - exp(b)), (a - a) * exp(b))"
+    library = library_of(tmp_path, f"def probe(a: X, b: X) -> vec4:\n    return {text}\n")
+    a = np.array([0.7, -0.7, 1e-30], np.float32)
+    value, lost = enclosed(library, "probe", {"a": a, "b": np.full(3, -60.0)})
+    assert not lost.any()
+    less, more, twice, none = (x for x in leaves(value) if isinstance(x, Enclosure))
+    k = a.astype(np.float64)
+    assert np.array_equal(np.where(k > 0.0, less.high, less.low), k)
+    assert np.array_equal(np.where(k > 0.0, more.low, more.high), -k)
+    assert np.array_equal(np.where(k > 0.0, twice.high, twice.low), 2.0 * k)
+    assert not none.low.any() and not none.high.any()
 
 
 @pytest.mark.parametrize("name", SAMPLE)
