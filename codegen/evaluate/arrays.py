@@ -13,7 +13,20 @@ import numpy.typing as npt
 
 from codegen.errors import UserError, check_names, unknown
 from codegen.evaluate.textures import as_map, lookup_in, size_in, texture_map
-from codegen.ir.types import BOOL, F16, F32, I32, TEXTURE, U32, Scalar, Struct, Type, Vector
+from codegen.ir.types import (
+    BOOL,
+    F16,
+    F32,
+    HALF_TYPES,
+    I32,
+    TEXTURE,
+    U32,
+    VALUE_TYPES,
+    Scalar,
+    Struct,
+    Type,
+    Vector,
+)
 from codegen.ir.types import Array as ArrayType
 
 Array = npt.NDArray[Any]
@@ -40,9 +53,11 @@ class Arithmetic:
 
     @functools.cached_property
     def dtypes(self) -> Mapping[str, type[np.generic]]:
-        """How each scalar type is held, by its name."""
+        """How each scalar type is held, and the elements of each vector type, by its name."""
         half = np.float16 if self.is_half else self.floats
-        return {F16.name: half, F32.name: self.floats, **{t.name: d for t, d in INTEGER_TYPES.items()}}
+        scalars = {F16.name: half, F32.name: self.floats, **{t.name: d for t, d in INTEGER_TYPES.items()}}
+        every = (*VALUE_TYPES.values(), *HALF_TYPES.values())
+        return scalars | {t.name: scalars[t.element.name] for t in every if isinstance(t, Vector)}
 
     def dtype(self, element: Scalar) -> type[np.generic]:
         return self.dtypes[element.name]

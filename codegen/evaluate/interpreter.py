@@ -229,42 +229,45 @@ class Frame:
         return value
 
     def expr(self, e: ir.Expr) -> Value:
-        m = self.arithmetic.namespace
-        match e:
-            case ir.Const():
-                return self.constant(e)
-            case ir.Var():
-                return self.scope[e.name]
-            case ir.Unary():
-                return self.fit(e.type, OPERATORS[e.op].meaning(m, self.array(e.operand)))
-            case ir.Binary():
-                a, b = self.array(e.left), self.array(e.right)
-                if a.ndim != b.ndim:
-                    a, b = (a[:, None], b) if a.ndim < b.ndim else (a, b[:, None])
-                return self.fit(e.type, OPERATORS[e.op].meaning(m, a, b))
-            case ir.Builtin():
-                args = [self.expr(a) for a in e.args]
-                found = self.fit(e.type, BUILTINS[e.op].meaning(m, *args))
-                # What only a map tells has one lane.
-                return broadcast(found, self.count) if len(found) != self.count else found
-            case ir.Call():
-                return self.made[id(e)] if id(e) in self.made else self.call(e)
-            case ir.Construct():
-                return self.construct(e.type, [self.expr(a) for a in e.args])
-            case ir.Convert():
-                return self.convert(e.type, self.array(e.operand))
-            case ir.Member():
-                value = self.expr(e.value)
-                assert isinstance(value, dict)
-                return value[e.name]
-            case ir.Index():
-                return self.element(self.expr(e.value), self.array(e.index))
-            case ir.Swizzle():
-                columns = ["xyzw".index(c) for c in e.components]
-                a = self.array(e.value)
-                return a[:, columns[0]] if len(columns) == 1 else a[:, columns]
-            case ir.Select():
-                return choose(self.array(e.condition), self.expr(e.if_true), self.expr(e.if_false))
+        """The value of an expression."""
+        return _EVALUATE[type(e)](self, e)
+
+    def variable(self, e: ir.Var) -> Value:
+        return self.scope[e.name]
+
+    def unary(self, e: ir.Unary) -> Array:
+        return self.fit(e.type, OPERATORS[e.op].meaning(self.arithmetic.namespace, self.array(e.operand)))
+
+    def binary(self, e: ir.Binary) -> Array:
+        a, b = self.array(e.left), self.array(e.right)
+        if a.ndim != b.ndim:
+            a, b = (a[:, None], b) if a.ndim < b.ndim else (a, b[:, None])
+        return self.fit(e.type, OPERATORS[e.op].meaning(self.arithmetic.namespace, a, b))
+
+    def builtin(self, e: ir.Builtin) -> Value:
+        args = [self.expr(a) for a in e.args]
+        found = self.fit(e.type, BUILTINS[e.op].meaning(self.arithmetic.namespace, *args))
+        # What only a map tells has one lane.
+        return broadcast(found, self.count) if len(found) != self.count else found
+
+    def made_or_called(self, e: ir.Call) -> Value:
+        return self.made[id(e)] if id(e) in self.made else self.call(e)
+
+    def member(self, e: ir.Member) -> Value:
+        value = self.expr(e.value)
+        assert isinstance(value, dict)
+        return value[e.name]
+
+    def index(self, e: ir.Index) -> Value:
+        return self.element(self.expr(e.value), self.array(e.index))
+
+    def swizzle(self, e: ir.Swizzle) -> Array:
+        columns = ["xyzw".index(c) for c in e.components]
+        a = self.array(e.value)
+        return a[:, columns[0]] if len(columns) == 1 else a[:, columns]
+
+    def select(self, e: ir.Select) -> Value:
+        return choose(self.array(e.condition), self.expr(e.if_true), self.expr(e.if_false))
 
     def element(self, value: Value, index: Array) -> Value:
         """The elements of an array that the lanes' numbers name."""
@@ -286,13 +289,11 @@ class Frame:
 
     def fit(self, type_: Type, value: Any) -> Array:
         """The value in the arithmetic's own dtype: numpy widens in places (comparisons of mpmath numbers)."""
-        element = element_of(type_)
-        assert isinstance(element, Scalar)
-        dtype = self.arithmetic.dtype(element)
+        dtype = self.arithmetic.dtypes[type_.name]
         if isinstance(value, np.ndarray) and value.dtype.type is dtype and not self.arithmetic.strict:
             return value
         fitted = np.asarray(value).astype(dtype, copy=False)
-        if self.arithmetic.strict and element == F16:
+        if self.arithmetic.strict and element_of(type_) == F16:
             kept = np.where(np.abs(fitted) < np.float16(SMALLEST_NORMAL), np.float16(0.0), fitted)
             return np.where(np.isinf(kept), np.float16(np.nan), kept)
         return fitted
@@ -310,7 +311,8 @@ class Frame:
         """The frame of a call."""
         return Frame(self.find, self.arithmetic, function, inputs, self.count, self.memory)
 
-    def construct(self, type_: Type, parts: list[Value]) -> Value:
+    def construct(self, e: ir.Construct) -> Value:
+        type_, parts = e.type, [self.expr(a) for a in e.args]
         if isinstance(type_, Struct):
             return {f.name: part for f, part in zip(type_.fields, parts, strict=True)}
         assert isinstance(type_, Vector)
@@ -322,7 +324,8 @@ class Frame:
             columns *= type_.size
         return stacked(columns)
 
-    def convert(self, type_: Type, value: Array) -> Array:
+    def convert(self, e: ir.Convert) -> Array:
+        type_, value = e.type, self.array(e.operand)
         if isinstance(type_, Vector):
             return self.fit(type_, value)
         assert isinstance(type_, Scalar)
@@ -336,3 +339,19 @@ class Frame:
         if type_ == U32 and value.dtype.kind == "f":
             return value.astype(np.float64).astype(np.int64).astype(np.uint32)
         return self.fit(type_, value)
+
+
+_EVALUATE: dict[type, Callable[[Frame, Any], Value]] = {
+    ir.Const: Frame.constant,
+    ir.Var: Frame.variable,
+    ir.Unary: Frame.unary,
+    ir.Binary: Frame.binary,
+    ir.Builtin: Frame.builtin,
+    ir.Call: Frame.made_or_called,
+    ir.Construct: Frame.construct,
+    ir.Convert: Frame.convert,
+    ir.Member: Frame.member,
+    ir.Index: Frame.index,
+    ir.Swizzle: Frame.swizzle,
+    ir.Select: Frame.select,
+}

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from operator import is_
+from operator import attrgetter, is_
 from typing import Any, TypeVar
 
 from codegen.errors import Place
@@ -286,15 +286,15 @@ def _none(e: Any) -> tuple[Expr, ...]:
 
 _CHILDREN: dict[type, Callable[[Any], tuple[Expr, ...]]] = {
     Unary: lambda e: (e.operand,),
-    Binary: lambda e: (e.left, e.right),
-    Builtin: lambda e: e.args,
-    Call: lambda e: e.args,
-    Construct: lambda e: e.args,
+    Binary: attrgetter("left", "right"),
+    Builtin: attrgetter("args"),
+    Call: attrgetter("args"),
+    Construct: attrgetter("args"),
     Convert: lambda e: (e.operand,),
     Member: lambda e: (e.value,),
     Swizzle: lambda e: (e.value,),
-    Index: lambda e: (e.value, e.index),
-    Select: lambda e: (e.condition, e.if_true, e.if_false),
+    Index: attrgetter("value", "index"),
+    Select: attrgetter("condition", "if_true", "if_false"),
 }
 _OVER: dict[type, Callable[[Any, tuple[Expr, ...]], Expr]] = {
     Unary: lambda e, parts: Unary(e.type, e.op, *parts),
@@ -326,7 +326,8 @@ def rebuild(e: Expr, parts: tuple[Expr, ...]) -> Expr:
 
 def map_expr(e: Expr, change: Callable[[Expr], Expr]) -> Expr:
     """The expression with `change` applied to every node, operands first."""
-    return change(rebuild(e, tuple(map_expr(c, change) for c in children(e))))
+    parts = children(e)
+    return change(rebuild(e, tuple([map_expr(c, change) for c in parts])) if parts else e)
 
 
 def map_body(body: tuple[Stmt, ...], change: Callable[[Expr], Expr]) -> tuple[Stmt, ...]:
@@ -352,10 +353,12 @@ def map_body(body: tuple[Stmt, ...], change: Callable[[Expr], Expr]) -> tuple[St
 
 
 def walk(e: Expr) -> Iterator[Expr]:
-    """Every node of an expression."""
-    yield e
-    for child in children(e):
-        yield from walk(child)
+    """Every node of an expression, each before its operands."""
+    waiting = [e]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        waiting += children(node)[::-1]
 
 
 def statements(body: tuple[Stmt, ...]) -> Iterator[Stmt]:
