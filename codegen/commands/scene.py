@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import gc
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import click
-from rich.console import Console
 
 from codegen.backends import open_runtime
 from codegen.errors import UserError
 from codegen.files import write_folder
 from codegen.library import load_library
-from codegen.scene.build import Builder
+from codegen.scene.build import Builder, Progress
 from codegen.scene.description.document import read_scene
 from codegen.scene.report.markdown import as_markdown, summary
 from codegen.scene.report.report import as_data, as_json
 
 NO_DRIVERS = "left out by --no-drivers"
+COLLECTED_AFTER = 100_000
+"""New objects that may refer to others, after which Python looks for cycles."""
 
 
 @click.command("scene")
@@ -34,15 +39,36 @@ def command(scene_file: Path, output: Path, no_drivers: bool, no_timing: bool) -
     runtimes: dict[str, Any] = {}
     for target in scene.dialects:
         runtimes[target] = NO_DRIVERS if no_drivers else _runtime(target)
-    progress = Console(stderr=True)
-    with progress.status("reading the scene") as status:
-        say = status.update if progress.is_terminal else lambda sentence: None
+    with _progress() as say, _rare_collection():
         outcome = Builder(library, scene, runtimes, timed=not no_timing, say=say).build()
     data = as_data(outcome)
     files = {result.file: result.text for result in outcome.targets}
     files |= {"report.md": as_markdown(data), "report.json": as_json(data)}
     write_folder(output, {name: text.encode("utf-8") for name, text in files.items()})
     click.echo(summary(data, output))
+
+
+@contextmanager
+def _progress() -> Iterator[Progress]:
+    """A line that says what is being done, where a person may watch."""
+    if not sys.stderr.isatty():
+        yield lambda sentence: None
+        return
+    from rich.console import Console  # takes longer to load than to say anything
+
+    with Console(stderr=True).status("reading the scene") as status:
+        yield status.update
+
+
+@contextmanager
+def _rare_collection() -> Iterator[None]:
+    """Python's search for cycles less often: a search makes millions of objects and hardly a cycle."""
+    before = gc.get_threshold()
+    gc.set_threshold(COLLECTED_AFTER, *before[1:])
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
 
 
 def _runtime(target: str) -> Any:

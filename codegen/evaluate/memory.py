@@ -12,11 +12,13 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from codegen.evaluate.arrays import Arithmetic, Value, convert_inputs
 from codegen.ir import nodes as ir
 
-MOST = 4000
-"""Values that are remembered; then all are forgotten. At 2500 lanes of three floats each takes 30 kB."""
+MOST = 256 * 2**20
+"""Bytes of values that are remembered; then all are forgotten."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,11 +35,12 @@ class Prepared:
 class Memory:
     """Remembers values while functions are compared over the same inputs.
 
-    most  values that are remembered; then all are forgotten
+    most  bytes of values that are remembered; then all are forgotten
     """
 
     def __init__(self, most: int = MOST) -> None:
         self._most = most
+        self._held = 0
         self._values: dict[tuple[object, ...], tuple[Value, list[Value]]] = {}
         self._inputs: dict[tuple[object, ...], tuple[Value, Any, int]] = {}
         self._prepared: dict[int, Prepared] = {}
@@ -72,10 +75,20 @@ class Memory:
         key = (what, lanes, *map(id, of))
         known = self._values.get(key)
         if known is None:
-            if len(self._values) >= self._most:
+            made = make()
+            if self._held > self._most:
                 self._values.clear()
-            known = self._values[key] = make(), of
+                self._held = 0
+            self._held += _bytes(made)
+            known = self._values[key] = made, of
         return known[0]
+
+
+def _bytes(value: Value) -> int:
+    """What a value takes; a map is the caller's."""
+    if isinstance(value, np.ndarray):
+        return value.nbytes
+    return sum(map(_bytes, value.values())) if isinstance(value, dict) else 0
 
 
 def variables(e: ir.Expr) -> tuple[str, ...]:

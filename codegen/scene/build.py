@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from codegen.passes.analysis.operations import operations
 from codegen.passes.probe import operations_left
 from codegen.passes.specialise import Specialised
 from codegen.scene import environment
+from codegen.scene.beside import beside
 from codegen.scene.description.document import Scene
 from codegen.scene.description.lights import UNROLLED
 from codegen.scene.environment import ConstantLight, MapError
@@ -90,6 +91,21 @@ class Outcome:
     hard_points: int
 
 
+class Ahead(NamedTuple):
+    """What does not depend on the search.
+
+    points  of the proofs
+    exact   the general function there in float64
+    single  the same by the float32 evaluation, where no driver is open
+    error   of the constant lights against their map
+    """
+
+    points: Points
+    exact: Floats
+    single: Floats | None
+    error: MapError | None
+
+
 @dataclass
 class Builder:
     """Builds one scene.
@@ -114,40 +130,57 @@ class Builder:
         general = general_function(self.scene, constant)
         library = self.library.with_functions([general.function])
         self.say("searching")
+        ahead = beside(lambda: self.ahead(library, general, list(constant), pixels), forked=not self.executed)
         reducer = Reducer.of(library, self.scene, general, draw(self.scene, general, SEARCH_POINTS))
         self.check_budget(reducer.reference.rounding)
-        reduced = {}
+        reduced: list[Reduced] = []
         for target in self.scene.dialects:
             self.say(f"searching for {target}")
-            reduced[target] = reducer.reduced(Prices.of(library, target), self.scene.budget)
+            reduced.append(reducer.reduced(Prices.of(library, target), self.scene.budget))
+            if len(reduced) == 1:
+                left = beside(lambda: self.remaining(library, reduced[0]), forked=not self.executed)
         if not reducer.exact().function.parameters:
             raise UserError(
                 f"{self.scene.path}: nothing varies: the scene is one colour and needs no function"
             )
-        executed = any(not isinstance(runtime, str) for runtime in self.runtimes.values())
-        proven = draw(self.scene, general, PROOF_POINTS if executed else UNEXECUTED_POINTS, SEED + 1)
-        exact = as_floats(evaluate(library, general.function.name, proven.inputs, "float64"))
+        proven, exact, single, error = ahead()
+        if single is not None:
+            self.results["float32", general.function.body] = single
         with self.compilers:
-            results = [self.proven(library, general, reducer, r, proven, exact) for r in reduced.values()]
-            left = self.remaining(library, results[0].reduced)
+            results = [self.proven(library, general, reducer, r, proven, exact) for r in reduced]
+        known = results[0].reduced is reduced[0]
+        remaining = left() if known else self.remaining(library, results[0].reduced)
         for result in results:
             if result.target == "glsl":
                 result.spirv = {key: count.result() for key, count in self.counting.items()}
-        error = None
-        if pixels is not None:
-            self.say("measuring the map")
-            error = self.map_error(library, proven, list(constant), pixels)
         return Outcome(
             scene=self.scene,
             general=general,
             known=reducer.knowledge,
             targets=results,
-            remaining=left,
+            remaining=remaining,
             environment=error,
             constant_lights=tuple(constant),
             seconds=time.perf_counter() - begin,
             hard_points=int(proven.hard.sum()),
         )
+
+    @property
+    def executed(self) -> bool:
+        """Whether a driver is open."""
+        return any(not isinstance(runtime, str) for runtime in self.runtimes.values())
+
+    def ahead(
+        self, library: Library, general: General, lights: list[ConstantLight], pixels: Floats | None
+    ) -> Ahead:
+        """What the proofs need of the general function, and the error of the map's lights."""
+        points = draw(self.scene, general, PROOF_POINTS if self.executed else UNEXECUTED_POINTS, SEED + 1)
+        exact = as_floats(evaluate(library, general.function.name, points.inputs, "float64"))
+        single = None
+        if not self.executed:
+            single = as_floats(evaluate(library, general.function.name, points.inputs, "float32"))
+        error = None if pixels is None else self.map_error(library, lights, pixels)
+        return Ahead(points, exact, single, error)
 
     def constant_lights(self) -> tuple[list[ConstantLight], Floats | None]:
         """The lights of the scene's map, and the map."""
@@ -255,9 +288,7 @@ class Builder:
             f"the budget {self.scene.budget:.3g}; the last approximation was {term}"
         )
 
-    def map_error(
-        self, library: Library, points: Points, lights: list[ConstantLight], pixels: Floats
-    ) -> MapError:
+    def map_error(self, library: Library, lights: list[ConstantLight], pixels: Floats) -> MapError:
         """The constant lights against the whole map, by the library's own model in float64."""
         one = general_function(_lit_by_one(self.scene))
         extended = library.with_functions([one.function])

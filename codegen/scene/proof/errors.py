@@ -86,7 +86,7 @@ class Reference:
         """The reference of a function of the library."""
         exact = as_floats(evaluate(library, name, points.inputs, "float64"))
         single = as_floats(evaluate(library, name, points.inputs, "float32"))
-        return Reference(points, exact, single)
+        return Reference(points, exact, single, Memory())
 
     @property
     def rounding(self) -> float:

@@ -132,7 +132,6 @@ class Reducer:
     def reduced(self, prices: Prices, budget: float) -> Reduced:
         """The cheapest function within the budget that the search finds for a target."""
         exact = self.exact()
-        error = self.error(exact)
         changes: list[Change] = []
         current, choices = exact, {}
         if budget > 0.0:
@@ -144,7 +143,7 @@ class Reducer:
             current = self.loosened(current, prices, budget, changes)
             current = self.dropped(current, prices, budget, changes)
             current = self.gathered(current, prices, budget, changes)
-            error = self.error(current)
+        error = self.error(current)
         return Reduced(prices.target, exact, current, tuple(changes), error, prices.source, choices)
 
     def error(self, made: Specialised) -> Measured:

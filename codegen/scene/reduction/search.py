@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from codegen.scene.general import General
 from codegen.scene.proof.errors import Measured, Reference
 from codegen.scene.reduction.prices import Prices
 from codegen.scene.reduction.sites import Choices, Known, Path, Site, sites, substituted
+
+Rank = Callable[[float, Callable[[], Measured]], float]
+"""What an offer is worth by what it saves and by the joint error, which is computed where it is asked for."""
 
 SMALLEST_SAVING = 1e-3
 """Share of the model's price below which a substitution is not worth its error."""
@@ -97,11 +101,11 @@ class Search:
 
         settled  functions that become multiplications where their exponent is a whole number
         """
-        by_saving = self._climb(prices, budget, settled, lambda saving, error: saving)
+        by_saving = self._climb(prices, budget, settled, lambda saving, joint: saving)
         if not by_saving.refused:
             return by_saving
         by_error = self._climb(
-            prices, budget, settled, lambda saving, error: saving / max(error, 1e-3 * budget)
+            prices, budget, settled, lambda saving, joint: saving / max(joint().largest, 1e-3 * budget)
         )
         return max((by_saving, by_error), key=lambda found: (found.saving, -found.error.largest))
 
@@ -110,11 +114,10 @@ class Search:
         prices: Prices,
         budget: float,
         settled: frozenset[str],
-        rank: Callable[[float, float], float],
+        rank: Rank,
     ) -> Found:
         choices: dict[Path, str] = {}
         steps: list[Substitution] = []
-        start = self.error({})
         least = SMALLEST_SAVING * prices.scale * prices.weight(self.model.name)
         refused = False
         while budget > 0.0:
@@ -133,7 +136,7 @@ class Search:
             steps = [s for s in steps if s.path[: len(step.path)] != step.path]
             steps.append(step)
         total = sum(step.saving for step in steps)
-        return Found(choices, tuple(steps), self.error(choices) if choices else start, total, refused)
+        return Found(choices, tuple(steps), self.error(choices), total, refused)
 
     def _saving(self, prices: Prices, site: Site, option: str) -> float:
         """What an option saves, at most the price of the function whose text holds the call."""
@@ -144,18 +147,20 @@ class Search:
         offers: list[tuple[float, Site, str]],
         choices: dict[Path, str],
         budget: float,
-        rank: Callable[[float, float], float],
+        rank: Rank,
     ) -> Substitution | None:
         """The best offer whose joint error fits, with the better ones that do not."""
         ranked = []
         for saving, site, option in offers:
-            joint = self.error(_taken(choices, site.path, option), screened=True)
-            ranked.append((rank(saving, joint.largest), saving, joint, site, option))
+            taken = _taken(choices, site.path, option)
+            worth = rank(saving, partial(self.error, taken, screened=True))
+            ranked.append((worth, saving, taken, site, option))
         ranked.sort(key=lambda entry: (-entry[0], entry[3].path, entry[4]))
         refused: list[str] = []
-        for _, saving, joint, site, option in ranked:
+        for _, saving, taken, site, option in ranked:
+            joint = self.error(taken, screened=True)
             if joint.fits(budget):
-                joint = self.error(_taken(choices, site.path, option))
+                joint = self.error(taken)
             if joint.fits(budget):
                 return Substitution(
                     site.path, site.caller, site.callee, option, saving, joint.largest, tuple(refused)
