@@ -106,16 +106,19 @@ def _counts(recorded: Recorded) -> list[str]:
 
 def _failures(recorded: Recorded) -> list[str]:
     rows = []
+    reasons: dict[str, int] = {}
     for stem, name, mode in _modes(recorded):
         for function, f in mode["functions"].items():
             for verdict, why in _failed(f):
-                known = f.get("known", {}).get(verdict, "not a known failure")
-                cells = (function, stem, name, verdict, why, known)
+                known = f.get("known", {}).get(verdict)
+                told = f"{reasons.setdefault(known, len(reasons) + 1)}" if known else "not a known failure"
+                cells = (function, stem, name, verdict, why, told)
                 rows.append(f"| {' | '.join(cell.replace('|', BAR) for cell in cells)} |".replace("\n", " "))
     if not rows:
         return ["None: every verdict is good on every driver and in every mode."]
     heads = ("function", "results", "mode", "not", "how far", "reason")
-    return [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|", *rows]
+    listed = [f"{number}. {' '.join(reason.split())}" for reason, number in reasons.items()]
+    return [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|", *rows, "", *listed]
 
 
 def _failed(f: Mapping[str, Any]) -> Iterable[tuple[str, str]]:
