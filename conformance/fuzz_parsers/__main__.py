@@ -18,6 +18,7 @@ import traceback
 import warnings
 from collections import Counter
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -90,8 +91,11 @@ def main(
         seed = before.seeds[way] + 1 if keep else 1
     run = Run(name, runs, seconds)
     memory = Path("/dev/shm")
-    with tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None) as folder:
+    with ExitStack() as stack:
+        place = tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None)
+        folder = stack.enter_context(place)
         box = sandbox.Sandbox(Path(folder))
+        stack.enter_context(box.guarding())
 
         def one(data: bytes) -> None:
             file = mutation.mutated(data, parser.seeds, parser.trees, parser.write)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,8 @@ from codegen.errors import UserError
 
 SECONDS = 10.0
 """After which a run hangs; the slowest file here takes well below one."""
+LOOKS = 10
+"""How often a run is looked at until then."""
 LONGEST_SENTENCE = 2000
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _CHANGES = (
@@ -44,6 +47,8 @@ class Sandbox:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder.resolve()
+        self.guarded = False
+        self.began = 0.0
         if not Sandbox._hooked:
             sys.addaudithook(Sandbox._watch)
             Sandbox._hooked = True
@@ -75,21 +80,31 @@ class Sandbox:
             raise Outside(f"{event} {path!r}")
 
     @contextmanager
-    def watching(self) -> Iterator[None]:
-        """Refuse changes elsewhere, and runs without end."""
+    def guarding(self) -> Iterator[None]:
+        """Refuse runs without end while many follow each other: one timer looks at all of them."""
 
-        def end(signum: int, frame: Any) -> None:
-            raise Hangs(f"no answer after {SECONDS:g} s")
+        def look(signum: int, frame: Any) -> None:
+            if Sandbox._inside is not None and time.monotonic() - self.began > SECONDS:
+                raise Hangs(f"no answer after {SECONDS:g} s")
 
-        previous = signal.signal(signal.SIGALRM, end)
-        signal.setitimer(signal.ITIMER_REAL, SECONDS)
-        Sandbox._inside = self.folder
+        previous = signal.signal(signal.SIGALRM, look)
+        signal.setitimer(signal.ITIMER_REAL, SECONDS / LOOKS, SECONDS / LOOKS)
+        self.guarded = True
         try:
             yield
         finally:
-            Sandbox._inside = None
+            self.guarded = False
             signal.setitimer(signal.ITIMER_REAL, 0.0)
             signal.signal(signal.SIGALRM, previous)
+
+    def watch(self, read: Callable[[Path], object], path: Path) -> None:
+        """Let a reader read; refuse changes elsewhere."""
+        self.began = time.monotonic()
+        Sandbox._inside = self.folder
+        try:
+            read(path)
+        finally:
+            Sandbox._inside = None
 
 
 def examine(sandbox: Sandbox, read: Callable[[Path], object], name: str, data: bytes) -> str:
@@ -98,10 +113,11 @@ def examine(sandbox: Sandbox, read: Callable[[Path], object], name: str, data: b
     errors  whatever but UserError comes out of the reader; AssertionError for a sentence that is none
     """
     path = sandbox.folder / name
-    path.write_bytes(data)
+    with open(path, "wb", buffering=0) as file:
+        file.write(data)
     try:
-        with sandbox.watching():
-            read(path)
+        with nullcontext() if sandbox.guarded else sandbox.guarding():
+            sandbox.watch(read, path)
     except UserError as e:
         sentence = str(e)
         assert sentence.strip(), "an empty sentence"

@@ -29,11 +29,12 @@ from conformance.check.merge import merge
 from conformance.fuzz_parsers import record
 from conformance.fuzz_parsers import sandbox as sandboxes
 from conformance.fuzz_parsers.archives import as_npz
+from conformance.fuzz_parsers.campaign import lacking
 from conformance.fuzz_parsers.documents import as_json, as_toml
 from conformance.fuzz_parsers.mutation import VALUES, mutated
 from conformance.fuzz_parsers.parser import Parser
 from conformance.fuzz_parsers.parsers import PARSERS
-from conformance.fuzz_parsers.readers import MODULES, sources
+from conformance.fuzz_parsers.readers import MODULES, code_hash, sources
 from conformance.fuzz_parsers.sandbox import Hangs, Outside, Sandbox, examine
 
 RUNS = {"lock": 20, "kit": 40, "results": 40}
@@ -280,6 +281,17 @@ def test_a_record_counts_runs_of_one_state_of_the_code() -> None:
     assert both.seeds == {"by_coverage": 1, "blind": 1} and both.date == "2026-01-02"
     assert record.recorded("scene", "none").runs == 0
     assert record.recorded("scene", record.read()["scene"].code) == record.read()["scene"]
+
+
+def test_a_campaign_takes_up_what_is_lacking(monkeypatch: pytest.MonkeyPatch) -> None:
+    entry = {"mesh": record.Record(code_hash("mesh"), 150, 700), "lock": record.Record("changed", 200, 800)}
+    monkeypatch.setattr(record, "read", lambda: entry)
+    assert list(lacking(("mesh", "lock"), until=1000, by_coverage=200)) == [
+        ("mesh", "by_coverage", 50),
+        ("lock", "by_coverage", 200),
+        ("mesh", "blind", 150),
+        ("lock", "blind", 1000),
+    ]
 
 
 def test_trees_are_written_as_they_are_read() -> None:
