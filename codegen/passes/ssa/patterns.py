@@ -156,15 +156,16 @@ def make(pattern: Pattern, found: Found, values: Values, type_: Type) -> ir.Expr
             c, a, b = p.operands
             sides = build(a, wanted), build(b, wanted)
             return values.build(ir.Select(sides[0].type, build(c, BOOL), *sides))
-        inner = _operand_type(p, found, wanted)
-        return apply(values, p.op, tuple(build(x, inner) for x in p.operands))
+        made = [None if isinstance(x, Number) else build(x, wanted) for x in p.operands]
+        beside = _type_beside([x.type for x in made if x is not None], wanted)
+        parts = zip(p.operands, made, strict=True)
+        return apply(values, p.op, tuple(build(x, beside) if m is None else m for x, m in parts))
 
     return values.splat(build(pattern, type_), type_)
 
 
-def _operand_type(p: Operation, found: Found, wanted: Type) -> Type:
-    """The type of numbers among operands: that of the names beside them."""
-    types = [found[name].type for name in sorted(names(p)) if name in found]
+def _type_beside(types: list[Type], wanted: Type) -> Type:
+    """The type of numbers among operands: that of the others."""
     wide = [t for t in types if isinstance(t, Vector)]
     return wide[0] if wide else types[0] if types else wanted
 
