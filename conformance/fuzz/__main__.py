@@ -4,6 +4,7 @@ python -m conformance.fuzz                        1000 programs on every target 
 python -m conformance.fuzz --seed 1 --case 17     that program alone, with its reduction if it fails
 python -m conformance.fuzz --count 100000 --workers 2
                                                   as many as that, on processes that may die
+python -m conformance.fuzz --record --count 5000  programs that follow those in results.json, kept there
 python -m conformance.fuzz --refusals             damaged sources instead
 """
 
@@ -11,10 +12,13 @@ from __future__ import annotations
 
 import sys
 import time
+from datetime import date
+from pathlib import Path
 
 import click
 
 from conformance.executor import open_executor
+from conformance.fuzz import record
 from conformance.fuzz.engine import Tally, run_cases
 from conformance.fuzz.refusals import MUTANTS, Refusals, read_damaged
 from conformance.fuzz.report import explain
@@ -29,6 +33,12 @@ from targets import TARGETS, Runtime, TargetUnavailable, open_runtime
 @click.option("--count", default=1000, show_default=True, help="How many programs.")
 @click.option("--target", "names", multiple=True, type=click.Choice(TARGETS), help="Targets; all by default.")
 @click.option("--refusals", is_flag=True, help="Damage the sources; each must be read or refused in words.")
+@click.option(
+    "--record", "keep", is_flag=True, help="Go on after what results.json holds, and keep it there."
+)
+@click.option(
+    "--results", type=click.Path(path_type=Path), default=record.RESULTS, help="With --record: the file."
+)
 @click.option("--workers", default=1, show_default=True, help="Processes of this machine.")
 @click.option("--scheduler", help="Use the workers of a Dask scheduler: tcp://host:8786.")
 def main(
@@ -38,10 +48,14 @@ def main(
     count: int,
     names: tuple[str, ...],
     refusals: bool,
+    keep: bool,
+    results: Path,
     workers: int,
     scheduler: str | None,
 ) -> None:
     """Make random programs, run them on every target, judge the results by interval."""
+    if keep and (refusals or first or number is not None):
+        raise click.UsageError("--record goes on by itself: it takes no --case, --first or --refusals")
     numbers = range(first, first + count) if number is None else range(number, number + 1)
     started = time.monotonic()
     if refusals:
@@ -51,12 +65,19 @@ def main(
         print("\n".join([*read.lines(), *(f"{n}/{k}: {what}\n{text}" for n, k, what, text in read.crashes)]))
         sys.exit(bool(read.crashes))
     runtimes = open_targets(names or TARGETS)
+    targets = [r.device.target for r in runtimes]
+    if keep:
+        first = record.following(record.read(results), seed, targets)
+        numbers = range(first, first + count)
     tally = Tally()
     if workers > 1 or scheduler:
-        jobs = pieces(seed, numbers.start, len(numbers), [r.device.target for r in runtimes])
+        jobs = pieces(seed, numbers.start, len(numbers), targets)
         tally = run_jobs(open_executor(workers, scheduler), jobs)
     else:
         run_cases(numbers, seed, runtimes, tally)
+    if keep:
+        new = record.entry(tally, seed, first, targets, date.today())
+        record.write(record.added(record.read(results), new), results)
     for finding in tally.findings:
         print(explain(finding, runtimes))
     print("\n".join(tally.lines()))
