@@ -214,7 +214,7 @@ FAMILIES: tuple[Family, ...] = (
         "axis_flanks",
         FLANK,
         "the same with l and v 1e-1 to 1e-4 rad from the axis",
-        "halo at the pole of combed fur (domain 5.2)",
+        "halo at the pole of combed fur",
         axis_flanks,
     ),
     Family(

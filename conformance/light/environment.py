@@ -1,6 +1,6 @@
 """An environment as the estimators see it: all texels for quadrature, a dual-paraboloid chain for lookups.
 
-Definitions of reference/lobes.md section 4: latitude-longitude texels with their exact solid angles;
+Latitude-longitude texels with their exact solid angles;
 256 x 256 x 2 paraboloid texels with border 1.2, plain 2 x 2 means, trilinear lookups clamped to the edge.
 """
 

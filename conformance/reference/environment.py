@@ -1,4 +1,4 @@
-"""References of the catalogue's section environment, from the definitions of reference/lobes.md section 4.
+"""References of section environment: lookups in a map, and its light as reflected by each lobe.
 
 A map is a list of levels (h, w, 4), the largest first: the disc around +z in the left half of each, that
 around -z in the right half, border 1.2. Directions (N, 3), levels of detail (N,), frames of (N, 3) axes.

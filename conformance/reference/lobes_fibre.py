@@ -1,6 +1,6 @@
 """Float64 lobes around a fibre along x: the strand lobe, and Poulin and Fournier's parallel cylinders.
 
-Formulas of reference/lobes.md sections 1.7 and 1.8. Elevations are measured from the plane orthogonal to x.
+Elevations are measured from the plane orthogonal to x.
 """
 
 from collections.abc import Callable
@@ -34,7 +34,7 @@ def strand_defect(l: Array, v: Array) -> Array:
 
 
 def strand_blend(v: Array, exponent: Array) -> Array:
-    """Share b of the part of the density that is proportional to c^m (lobes.md 1.7)."""
+    """Share b of the part of the density that is proportional to c^m."""
     cv, sv = elevation(v)
     p = real(exponent)
     along = np.abs(cv) ** (p + 2.0) / (p + 1.0)

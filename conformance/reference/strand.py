@@ -24,7 +24,7 @@ LARGEST_EXPONENT = 80.0
 
 
 def strand_angles(t: Any, l: Any, v: Any) -> Struct:
-    """Cosines and sines against the tangent; 1 - strand cosine as half a sum of squares (domain 5.2)."""
+    """Cosines and sines against the tangent; 1 - strand cosine as half a sum of squares."""
     cos_l, cos_v, sin_l, sin_v = cosine(t, l), cosine(t, v), sine(t, l), sine(t, v)
     defect = 0.5 * ((sin_l - sin_v) ** 2 + (cos_l + cos_v) ** 2)
     return {"cos_l": cos_l, "cos_v": cos_v, "sin_l": sin_l, "sin_v": sin_v, "defect": defect}
@@ -36,7 +36,7 @@ def strand_diffuse(t: Any, l: Any) -> Array:
 
 
 def strand_cosine(t: Any, l: Any, v: Any) -> Array:
-    """Closed form of the maximum of v.r over the unit normals: sin sin - cos cos (domain E7)."""
+    """Closed form of the maximum of v.r over the unit normals: sin sin - cos cos."""
     return sine(t, l) * sine(t, v) - cosine(t, l) * cosine(t, v)
 
 
@@ -170,7 +170,7 @@ def scheuermann_shade(
     secondary_shift: Any,
     mask: Any,
 ) -> Array:
-    """Two shifted highlights over a wrapped diffuse term (Scheuermann 2004, as corrections A3 pins it)."""
+    """Two shifted highlights over a wrapped diffuse term (Scheuermann 2004, as public ports agree on it)."""
     h = half_vector(l, v)
     diffuse = np.clip(0.25 + 0.75 * cosine(n, l), 0.0, 1.0)
 

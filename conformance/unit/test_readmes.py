@@ -4,6 +4,7 @@ Plan. Markdown files, and the words of sources where paths and modules are conce
   links     a relative link leads to a file or a folder
   tables    a table "file | idea" or "folder | idea" names what lies beside it, all of that and nothing else
   paths     a path from the root of the repository exists; one recipe makes files of its own
+  notes     a Markdown file that a source names is one of the repository, or one that a command writes
   modules   what `python -m` is said to run can be run
   commands  `vair COMMAND --option` and `./dev COMMAND` exist; README.md tells of every command
 """
@@ -32,6 +33,9 @@ SOURCES = [
     if not name.startswith(("conformance/unit/", "conformance/execute/", "conformance/mutation/test_"))
     if name != ".ci/requirements.txt"
 ]
+WRITTEN = {"report.md"}
+"""What commands write."""
+TESTS_LINKS = "conformance/unit/test_pages.py"
 UNNAMED = {"README.md", "__init__.py", "__main__.py"}
 PATH = re.compile(r"(?<![\w./\"-])(?:shaderlib|codegen|targets|conformance|examples)/[\w./*-]+")
 MODULE = re.compile(r"python3? -m ((?:codegen|conformance|targets|examples)(?:\.\w+)*)")
@@ -105,6 +109,19 @@ def test_paths_exist() -> None:
         if name != MAKES_FILES
         for path in PATH.findall(text(name))
         if not exists(path.rstrip("."))
+    ]
+    assert not wrong, report(wrong)
+
+
+def test_notes_that_are_named_are_here() -> None:
+    """Origins of tolerances above all: nobody can look up a note that is elsewhere."""
+    here = {PurePosixPath(name).name for name in MARKDOWN} | WRITTEN
+    wrong = [
+        f"{name}: {note}"
+        for name in files()
+        if name.endswith((".py", ".toml", ".md")) and name != TESTS_LINKS
+        for note in re.findall(r"[\w-]+\.md\b", text(name))
+        if note not in here
     ]
     assert not wrong, report(wrong)
 
