@@ -1,4 +1,4 @@
-"""Every pair as jobs of an executor: one relation with some of its subjects, on all targets at once."""
+"""Every pair as jobs of an executor: one relation with some of its subjects on one target."""
 
 from __future__ import annotations
 
@@ -31,20 +31,21 @@ SOURCES = ("conformance/metamorphic", "conformance/fuzz", "conformance/programs"
 
 
 def pieces(library: Library, targets: Sequence[str], lanes: int) -> list[Job]:
-    """The jobs of all pairs; `function` of a job is kind and relation."""
+    """The jobs of all pairs, target by target; `function` of a job is kind and relation."""
     counts = {f"inputs/{r.name}": len(r.functions) for r in inputs.RELATIONS}
     counts |= {f"library/{r.name}": len(library.public) for r in source.RELATIONS}
     counts |= {f"programs/{r.name}": PROGRAMS for r in source.RELATIONS}
     options = (("lanes", str(lanes)),)
     return [
-        Job(TASK, what, ",".join(targets), start, min(start + SUBJECTS, count), options=options)
+        Job(TASK, what, target, start, min(start + SUBJECTS, count), options=options)
+        for target in targets
         for what, count in counts.items()
         for start in range(0, count, SUBJECTS)
     ]
 
 
 def run(job: Job) -> dict[str, Any]:
-    """The pairs of one job on its targets."""
+    """The pairs of one job on its target."""
     kind, name = job.function.split("/")
     lanes, part = int(dict(job.options)["lanes"]), slice(job.start, job.stop)
     library, cases = programs() if kind == "programs" else (load_library(), [])
