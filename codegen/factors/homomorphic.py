@@ -60,7 +60,7 @@ class Factors:
     r: Array | None = None
     angles: str = "along"
 
-    def value(self, l: npt.ArrayLike, v: npt.ArrayLike) -> Array:  # the catalogue's name
+    def value(self, l: npt.ArrayLike, v: npt.ArrayLike) -> Array:  # the library's name
         """scale p(v) q(h) p(l) r(angles) of unit directions (n, 3), (n, channels); no cosine."""
         to_light, to_viewer = np.asarray(l, np.float64), np.asarray(v, np.float64)
         found = self.scale * lookup(self.p, parabolic_uv(to_viewer)) * lookup(self.p, parabolic_uv(to_light))
@@ -92,14 +92,14 @@ def parabolic_uv(w: Array) -> Array:
     return np.asarray(w[..., :2] / np.maximum(1.0 + w[..., 2:], 1e-6) * 0.5 + 0.5)
 
 
-def half_vector(l: Array, v: Array) -> Array:  # the catalogue's name
+def half_vector(l: Array, v: Array) -> Array:  # the library's name
     """The direction halfway; above the surface l + v never vanishes unless both graze from opposite sides."""
     h = l + v
     length = np.linalg.norm(h, axis=-1, keepdims=True)
     return np.asarray(np.where(length > 1e-12, h / np.maximum(length, 1e-12), [0.0, 0.0, 1.0]))
 
 
-def angles_uv(l: Array, v: Array, angles: str, size: int) -> Array:  # the catalogue's name
+def angles_uv(l: Array, v: Array, angles: str, size: int) -> Array:  # the library's name
     """Coordinates of two angles in a table of that size: 0 and 1 are the centres of its outermost texels."""
     w = np.stack([l, v], axis=-2)
     along = angles == "along"

@@ -29,7 +29,7 @@ UNIT = 1e-3
 class Samples:
     """Directions (n, 3) above the surface, unit, and values (n, channels); a NaN value is a missing one."""
 
-    l: Array  # the catalogue's name of the direction to the light
+    l: Array  # the library's name of the direction to the light
     v: Array
     value: Array
 

@@ -38,7 +38,7 @@ def draw_samples(
     """
     function = library.function(name)
     _check(function, settings, diffuse)
-    l, v = directions(count, seed)  # the catalogue's name
+    l, v = directions(count, seed)  # the library's name
     drawn = {"l": l, "v": v, "h": half_vector(l, v)}
     inputs = {}
     for parameter in function.parameters:

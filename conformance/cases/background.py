@@ -72,7 +72,7 @@ def mixed(stream: Stream, leaf: Leaf, n: int, share: float) -> Column:
 
 
 def related(values: dict[str, Any]) -> None:
-    """Make values respect what the catalogue says of two parameters together, beyond their domains.
+    """Make values respect what the documentation says of two parameters together, beyond their domains.
 
     i < n (hammersley), layer < layers (shells), cos_dark <= cos_lit (f_surface; equality is a hard case).
     """

@@ -17,7 +17,7 @@ FIBRES = ("strand",)
 
 @dataclass(frozen=True)
 class Lobe:
-    """A lobe of the catalogue with its parameters, in the frame x = tangent, z = normal."""
+    """A lobe of the library with its parameters, in the frame x = tangent, z = normal."""
 
     name: str
     parameters: tuple[float, ...] = ()

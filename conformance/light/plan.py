@@ -39,7 +39,7 @@ LOBES = (
     Lobe("strand", (100.0,)),
     Lobe("strand", (1000.0,)),
 )
-"""Every lobe of the catalogue, the two that the design's figures speak of with three exponents."""
+"""Every lobe of the library, the two that published figures speak of with three exponents."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
-"""Independent float64 references, one module per section of the catalogue.
+"""Independent float64 references, one module per section of the library.
 
 A module of this package may define two tables, which are joined here:
-REFERENCES  name of a public function -> its value in float64, parameters in the catalogue's order
+REFERENCES  name of a public function -> its value in float64, parameters in the library's order
 AMBIGUOUS   name of a public function -> mask of the inputs at which rounding decides between two documented
             values, and which are therefore checked for finiteness only (see ambiguous.py)
 

@@ -1,6 +1,6 @@
-"""References of the catalogue's section `direction`.
+"""References of the library's section `direction`.
 
-Parameters that the catalogue calls directions (a, b, l, v, n, t) are normalised in float64; `x` and `w`, in
+Parameters that the library calls directions (a, b, l, v, n, t) are normalised in float64; `x` and `w`, in
 which the functions are linear, are taken as they are. Vectors are (N, 3), a frame is a dict of three of them.
 """
 
@@ -24,7 +24,7 @@ from conformance.reference.exact import (
 from conformance.reference.sums import direction_sum, dot, rejection, rejection_direction
 
 OPPOSITE = 1e-12
-"""Below this |l + v|^2 the half vector is the documented fixed vector orthogonal to l (catalogue)."""
+"""Below this |l + v|^2 the half vector is the documented fixed vector orthogonal to l."""
 
 
 def line_component(x: Any, t: Any) -> Array:

@@ -97,7 +97,7 @@ def mirror(v: Array, h: Array) -> Array:
 
 
 def power(base: npt.ArrayLike, exponent: npt.ArrayLike) -> Array:
-    """base^exponent by the catalogue: exponent 0 gives 1 everywhere, else base <= 0 gives 0."""
+    """base^exponent as documented: exponent 0 gives 1 everywhere, else base <= 0 gives 0."""
     base, exponent = np.broadcast_arrays(real(base), real(exponent))
     raised = np.power(np.where(base > 0.0, base, 1.0), exponent)
     return np.where(exponent == 0.0, 1.0, np.where(base > 0.0, raised, 0.0))

@@ -1,4 +1,4 @@
-"""References of the catalogue's section fakefur: Goldman 1997 with the errata of the lecture put right.
+"""References of the library's section fakefur: Goldman 1997 with the errata of the lecture put right.
 
 Written from the paper's steps (average geometry, opacity, directional and surface attenuation, blend) and
 from the slab integral, not from any shader. Scalars (N,), vectors (N, 3), structs as dicts of arrays.
@@ -32,13 +32,13 @@ from conformance.reference.exact import (
 )
 
 GRAZING_FLOOR = 1e-12
-"""Smallest cosine between a direction and the normal that the optical depth divides by (catalogue)."""
+"""Smallest cosine between a direction and the normal that the optical depth divides by (as documented)."""
 LARGEST_DEPTH = 1e9
-"""Optical depth is clamped here (catalogue)."""
+"""Optical depth is clamped here (as documented)."""
 GRAZING_NOISE = 2.0**-22
 """The cosine below which float32 cannot tell front from back."""
 MEAN_FLOOR = 1e-3
-"""Shortest mean tangent of a footprint (catalogue)."""
+"""Shortest mean tangent of a footprint (as documented)."""
 
 
 def fur_hair_area(hair_length: Array, radius_base: Array, radius_tip: Array) -> Array:

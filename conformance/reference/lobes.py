@@ -1,6 +1,6 @@
-"""References of the catalogue's section lobes: value, density per steradian and sampler of every lobe.
+"""References of the library's section lobes: value, density per steradian and sampler of every lobe.
 
-Parameters as in the catalogue: directions (N, 3) in the local frame (x tangent, z normal), pairs (N, 2),
+Parameters as in the library: directions (N, 3) in the local frame (x tangent, z normal), pairs (N, 2),
 scalars (N,). Lambert and the modified Phong lobe stand here; half-vector lobes and lobes of fibres have their
 own modules.
 """

@@ -1,4 +1,4 @@
-"""References of the catalogue's section maps: projections of the sphere, texel solid angles, sampling
+"""References of the library's section maps: projections of the sphere, texel solid angles, sampling
 weights.
 
 Directions (N, 3), texture coordinates (N, 2) in [0, 1]^2 unless said otherwise, scalars (N,).

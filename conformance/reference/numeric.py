@@ -1,4 +1,4 @@
-"""References of the catalogue's section `numeric`. Scalars are arrays (N,), vectors (N, 3); all float64."""
+"""References of the library's section `numeric`. Scalars are arrays (N,), vectors (N, 3); all float64."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""References of the catalogue's section sampling.
+"""References of the library's section sampling.
 
 Integer sequences are exact: unbounded Python integers or uint64 masked to 32 bits. Their results are float32
 values, returned as float64; unsigned words stay uint32. Pairs have shape (N, 2).

@@ -1,4 +1,4 @@
-"""References of the catalogue's section shells and fins (Lengyel 2001, Banks' shadow falloff, errata
+"""References of the library's section shells and fins (Lengyel 2001, Banks' shadow falloff, errata
 applied).
 
 Scalars (N,), vectors (N, 3), layer indices as uint32 arrays.
@@ -26,12 +26,12 @@ from conformance.reference.exact import (
 )
 
 VIEW_FLOOR = 1e-5
-"""Smallest |n.v| that the slanted opacity divides by (catalogue)."""
+"""Smallest |n.v| that the slanted opacity divides by (as documented)."""
 THRESHOLD_FLOOR = 1e-6
-"""Smallest silhouette threshold (catalogue)."""
+"""Smallest silhouette threshold (as documented)."""
 
 PROPERTY_ONLY: tuple[str, ...] = ("shell_strand_mask",)
-"""The catalogue fixes no formula for these: coverage in [0, 1], falling with height, equal on every target.
+"""No paper fixes a formula for these: coverage in [0, 1], falling with height, equal on every target.
 """
 
 

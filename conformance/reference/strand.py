@@ -1,4 +1,4 @@
-"""References of the catalogue's section `strand`: lit curves after Banks 1994 and Kajiya and Kay 1989.
+"""References of the library's section `strand`: lit curves after Banks 1994 and Kajiya and Kay 1989.
 
 Angles are those of the given vectors, exactly: sines come from cross products of the raw inputs. Powers are
 exp(p log1p(-q)) with the small quantity q formed first, because p up to 1e5 multiplies the rounding of 1 - q.
@@ -18,9 +18,9 @@ from conformance.reference.numeric import pow_one_minus, safe_smoothstep
 from conformance.reference.sums import direction_sum, dot, rejection_direction
 
 LARGEST_PATH = 1e18
-"""Longest path and largest extinction that the catalogue admits."""
+"""Longest path and largest extinction that the domains admit."""
 LARGEST_EXPONENT = 80.0
-"""Where coat_transmittance clamps its argument (catalogue)."""
+"""Where coat_transmittance clamps its argument (as documented)."""
 
 
 def strand_angles(t: Any, l: Any, v: Any) -> Struct:
@@ -142,8 +142,7 @@ def tangent_from_map(n: Any, t: Any, map_tangent: Any) -> Array:
     """Tangent of a brushed surface: the map's vector in the frame (T, n x T, n), flattened into the surface.
 
     Orthogonal to n the vector is map.x T + map.y B, whatever map.z; where both are 0 it is T. Where t is
-    parallel to n the catalogue names no T; here it is then the tangent of frame_from_normal(n), as in
-    frame_from_tangent.
+    parallel to n, T is the tangent of frame_from_normal(n), as in frame_from_tangent.
     """
     m = real(map_tangent)
     tangent = rejection_direction(t, n, frame_from_normal(n)["tangent"])
@@ -152,7 +151,7 @@ def tangent_from_map(n: Any, t: Any, map_tangent: Any) -> Array:
 
 
 def tangent_shift(t: Any, n: Any, shift: Any) -> Array:
-    """The direction of t + shift n. Where the sum is zero the catalogue names no value; here t is kept."""
+    """The direction of t + shift n; t where the sum is zero."""
     return safe_unit(direction_sum(t, shift, n), unit(t))
 
 

@@ -155,7 +155,7 @@ def arc_chart(v: Array, spread: float, sharpness: float) -> Chart:
 
 
 def chart_for(lobe: str, parameters: dict[str, float], v: Array) -> Chart:
-    """A chart that suits the catalogue's lobe of that name; KeyError for an unknown lobe."""
+    """A chart that suits the library's lobe of that name; KeyError for an unknown lobe."""
     p = parameters
     charts: dict[str, Callable[[], Chart]] = {
         "lambert": lambda: axis_chart(np.array([0.0, 0.0, 1.0]), 1.0),

@@ -1,4 +1,4 @@
-"""The catalogue's functions in mpmath, one point at a time, by other routes than the float64 references.
+"""The library's functions in mpmath, one point at a time, by other routes than the float64 references.
 
 Vectors are lists of mpf. Sines come from cosines, the strand cosine from the sum of two angles, projections
 from plain differences: at 80 digits the cancellation that float64 must avoid does no harm.

@@ -1,6 +1,6 @@
-"""Stand-ins for the functions of the catalogue: references and cases are tested without the generator.
+"""Stand-ins for the functions of the library: references and cases are tested without the generator.
 
-Names, parameter order and types are the catalogue's; the domains are the ones its text implies.
+Names, parameter order and types are the library's; the domains are the ones its text implies.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The functions that read environment maps are complete and generated, and their reference is sound.
 
 Plan. The sources below shaderlib/environment are what the template gives; every lobe has every estimator,
-with the catalogue's parameters. The reference, which tests on drivers trust, agrees with the lookups of
+with the library's parameters. The reference, which tests on drivers trust, agrees with the lookups of
 conformance/light away from the rim, is continuous across it, and finds a constant sky at every level. What
 `vair env` prepares, the functions read: directions keep their axes.
 """

@@ -1,7 +1,7 @@
 """What is measured of the estimators of light, its records, and the section of the report about it.
 
 Plan.
-  plan      every lobe of the catalogue is in it; quick is a part of it; points and viewers lie as they should
+  plan      every lobe of the library is in it; quick is a part of it; points and viewers lie as they should
   curves    every estimator of a small plan has its errors, the emitted ones those of float64 but for rounding
   records   what is kept is read again; other files are refused with one sentence
   section   the best estimator of a row stands out, times lie on lines, figures join the promised ones
