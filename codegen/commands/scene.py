@@ -14,11 +14,13 @@ import click
 from codegen.backends import open_runtime
 from codegen.errors import UserError
 from codegen.files import write_folder
-from codegen.library import load_library
-from codegen.scene.build import Builder, Progress
+from codegen.library import Library, load_library
+from codegen.lines import linemap
+from codegen.scene.build import Builder, Outcome, Progress, TargetResult
 from codegen.scene.description.document import read_scene
 from codegen.scene.report.markdown import as_markdown, summary
 from codegen.scene.report.report import as_data, as_json
+from codegen.scene.report.text import included
 
 NO_DRIVERS = "left out by --no-drivers"
 COLLECTED_AFTER = 100_000
@@ -30,12 +32,19 @@ COLLECTED_AFTER = 100_000
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the files.")
 @click.option("--no-drivers", is_flag=True, help="Prove by the float32 evaluation only; no device is opened.")
 @click.option("--no-timing", is_flag=True, help="Leave the speed on the drivers out of the report.")
-def command(scene_file: Path, output: Path, no_drivers: bool, no_timing: bool) -> None:
+@click.option(
+    "--map",
+    "maps",
+    type=click.Path(path_type=Path),
+    help="Write line maps as vair emit does into this folder.",
+)
+def command(scene_file: Path, output: Path, no_drivers: bool, no_timing: bool, maps: Path | None) -> None:
     """Write the minimal function for a scene, for each of its targets, with report.md and report.json."""
     library = load_library()
     scene = read_scene(scene_file, library)
-    if output.exists() and not output.is_dir():
-        raise UserError(f'cannot write to "{output}": it is a file')
+    for folder in (output, maps):
+        if folder is not None and folder.exists() and not folder.is_dir():
+            raise UserError(f'cannot write to "{folder}": it is a file')
     runtimes: dict[str, Any] = {}
     for target in scene.dialects:
         runtimes[target] = NO_DRIVERS if no_drivers else _runtime(target)
@@ -45,7 +54,17 @@ def command(scene_file: Path, output: Path, no_drivers: bool, no_timing: bool) -
     files = {result.file: result.text for result in outcome.targets}
     files |= {"report.md": as_markdown(data), "report.json": as_json(data)}
     write_folder(output, {name: text.encode("utf-8") for name, text in files.items()})
+    if maps is not None:
+        write_folder(
+            maps, {f"{r.file}.json": line_map(library, outcome, r).encode() for r in outcome.targets}
+        )
     click.echo(summary(data, output))
+
+
+def line_map(library: Library, outcome: Outcome, result: TargetResult) -> str:
+    """The line map of a target's file as JSON."""
+    dialect, _, defined = included(library, outcome.scene, outcome.general, result.reduced)
+    return linemap.as_json(linemap.map_of(dialect, result.text, defined))
 
 
 @contextmanager

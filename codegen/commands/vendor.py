@@ -12,6 +12,7 @@ from rich.console import Console
 from codegen.backends import open_runtime
 from codegen.emit.module import DEFAULT_PREFIX
 from codegen.errors import UserError
+from codegen.files import write_folder
 from codegen.library import Library, load_library
 from codegen.vendor.install import install, read_old_lock
 from codegen.vendor.lock import NAME
@@ -32,6 +33,12 @@ NO_DRIVERS = "left out by --no-drivers"
 @click.option("--per-function", is_flag=True, help="One file per function instead of one per dialect.")
 @click.option("--force", is_flag=True, help="Replace files that were edited or are not Vair's.")
 @click.option("--no-drivers", is_flag=True, help="With --scene: prove by the float32 evaluation only.")
+@click.option(
+    "--map",
+    "maps",
+    type=click.Path(path_type=Path),
+    help="Write line maps as those of vair emit into this folder, which lies outside of DIR.",
+)
 def command(
     folder: Path,
     functions: tuple[str, ...],
@@ -42,6 +49,7 @@ def command(
     per_function: bool,
     force: bool,
     no_drivers: bool,
+    maps: Path | None,
 ) -> None:
     """Write files and vair.lock into DIR, or update what is there.
 
@@ -50,6 +58,8 @@ def command(
     """
     if scene is not None and (functions or per_function):
         raise UserError(SCENE_ALONE)
+    if maps is not None and maps.resolve().is_relative_to(folder.resolve()):
+        raise UserError(f'"{maps}": maps in "{folder}" would be files that vair verify does not expect')
     library = load_library()
     old = read_old_lock(folder, force=force)
     given = any((functions, scene, targets, dialects, prefix is not None, per_function))
@@ -68,6 +78,8 @@ def command(
         )
     plan = planned(library, options, folder, drivers=not no_drivers)
     changed = install(folder, plan, force=force)
+    if maps is not None:
+        write_folder(maps, {name: text.encode("utf-8") for name, text in plan.maps().items()})
     count = len(plan.lock.functions)
     click.echo(
         f"{folder}: {count} function{'s' if count > 1 else ''} in {len(plan.files)} "

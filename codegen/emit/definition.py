@@ -28,6 +28,7 @@ class Definition:
     code     lines of the definition
     path     the source file that it says; empty where none is known
     lines    the line of that file which each line of code says; 0 where none is known
+    paths    the source file of each line, where a function was made of several; else empty
     """
 
     name: str
@@ -35,6 +36,7 @@ class Definition:
     code: tuple[str, ...]
     path: str = field(default="", compare=False)
     lines: tuple[int, ...] = field(default=(), compare=False)
+    paths: tuple[str, ...] = field(default=(), compare=False)
 
     @property
     def guard(self) -> str:

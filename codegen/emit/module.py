@@ -103,7 +103,10 @@ def definitions(library: Library, dialect: Dialect, selection: Selection, prefix
         promised = guaranteed_of(library, version, dialect)
         words = comment.function_comment(version.source, bounds, dialect.target, rename, promised)
         texts, lines = zip(*printer.traced_function(f), strict=True)
-        found.append(Definition(f.name, tuple(words), texts, f.place.path, lines))
+        places = [f.source_of(line) for line in lines] if f.origins else []
+        numbers = tuple(place.line for place in places) or lines
+        paths = tuple(place.path for place in places)
+        found.append(Definition(f.name, tuple(words), texts, f.place.path, numbers, paths))
     return found
 
 

@@ -7,7 +7,7 @@ are structured: there is no jump but `Return`, and every path of a function ends
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from operator import attrgetter, is_
 from typing import Any, TypeVar
@@ -258,7 +258,10 @@ class StructDef:
 
 @dataclass(frozen=True)
 class Function:
-    """One function of the library. `kind`: base, variant, printed or helper; `base` names what it varies."""
+    """One function of the library. `kind`: base, variant, printed or helper; `base` names what it varies.
+
+    origins  of a function that was made of others: what line numbers of its statements stand for
+    """
 
     name: str
     module: str
@@ -269,6 +272,11 @@ class Function:
     body: tuple[Stmt, ...]
     doc: Doc
     place: Place
+    origins: Mapping[int, Place] = field(default_factory=dict, compare=False, repr=False)
+
+    def source_of(self, line: int) -> Place:
+        """The place in a source that the line number of a statement stands for."""
+        return self.origins.get(line) or Place(self.place.path, line)
 
     @property
     def public(self) -> bool:

@@ -67,12 +67,13 @@ def map_of(
     lines = text.splitlines()
     position = 0
     for d in definitions:
-        for code, line in zip(d.code, d.lines or (0,) * len(d.code), strict=True):
+        paths = d.paths or (d.path,) * len(d.code)
+        for code, line, path in zip(d.code, d.lines or (0,) * len(d.code), paths, strict=True):
             while lines[position] != code:
                 position += 1
             position += 1
             if line:
-                origins[position] = Origin(d.name, d.path, line)
+                origins[position] = Origin(d.name, path, line)
     numbers = {number: path for path, number in (files or {}).items()}
     return LineMap(dialect.target, dialect.name, len(lines), origins, numbers)
 

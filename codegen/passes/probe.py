@@ -54,5 +54,5 @@ class _Shared:
             return sum(operations(made.function).values())
         assert flow.result is not None
         left = used_parameters(values, [*roots(flow.items), *leaves(flow.result)])
-        body = statements(values, flow, function.returns, parameter_names(left, function))
+        body, _ = statements(values, flow, function.returns, parameter_names(left, function))
         return sum(operations(replace(function, body=body)).values())

@@ -17,6 +17,7 @@ from codegen.guarantees import table_of
 from codegen.ir.nodes import Function, StructDef
 from codegen.ir.types import TEXTURE
 from codegen.library import Library, Selection
+from codegen.lines.linemap import as_json, map_of
 from codegen.vendor.lock import NAME, Lock, Promise, file_hash, lock_text
 from codegen.vendor.options import Options, key
 from codegen.version import VERSION
@@ -28,13 +29,21 @@ STEM = "vair"
 class Plan:
     """Files by name with their texts, and the lock for them.
 
-    library  that holds the functions
-    texts    definitions by dialect ("glsl/430")
+    library      that holds the functions
+    definitions  what each file defines, and the dialect it is in
     """
 
     lock: Lock
     files: Mapping[str, str]
     library: Library
+    definitions: Mapping[str, tuple[Dialect, Sequence[Definition]]]
+
+    def maps(self) -> dict[str, str]:
+        """A line map of each file as JSON, by the file's name and .json."""
+        return {
+            f"{name}.json": as_json(map_of(d, self.files[name], defined))
+            for name, (d, defined) in self.definitions.items()
+        }
 
     @functools.cached_property
     def lock_text(self) -> str:
@@ -46,17 +55,20 @@ def plan_functions(library: Library, options: Options) -> Plan:
     """The files for chosen functions; raises UserError for unknown functions and prefixes that collide."""
     selection = library.select(options.functions or None)
     files: dict[str, str] = {}
+    parts: dict[str, tuple[Dialect, Sequence[Definition]]] = {}
     printed: list[tuple[Dialect, list[Definition]]] = []
     for d in options.found_dialects():
         alike = [found for other, found in printed if _prints_alike(other, d)]
         found = alike[0] if alike else definitions(library, d, selection, options.prefix)
         printed += [] if alike else [(d, found)]
         if options.per_function:
-            files |= dict(_single_files(library, options, d, selection, found))
+            for name, text, own in _single_files(library, options, d, selection, found):
+                files[name], parts[name] = text, (d, own)
         else:
             head = emitted_header(d, selection.source_hash, options.functions or None, options.prefix)
-            files[file_name(d, STEM)] = file_text(d, head, found)
-    return Plan(locked(library, options, selection, files), files, library)
+            name = file_name(d, STEM)
+            files[name], parts[name] = file_text(d, head, found), (d, found)
+    return Plan(locked(library, options, selection, files), files, library, parts)
 
 
 def locked(library: Library, options: Options, selection: Selection, files: Mapping[str, str]) -> Lock:
@@ -106,10 +118,10 @@ def _prints_alike(a: Dialect, b: Dialect) -> bool:
 
 def _single_files(
     library: Library, options: Options, d: Dialect, selection: Selection, found: Sequence[Definition]
-) -> Iterator[tuple[str, str]]:
-    """One file per function; where there is no preprocessor, also one for everything that they need.
+) -> Iterator[tuple[str, str, Sequence[Definition]]]:
+    """Name, text and definitions of one file per function.
 
-    Behind guards a file holds all it needs, so that any of them do in any order. Without, a file holds its
+    Where there is no preprocessor, also of one for each struct that they need. Behind guards a file holds all it needs, so that any of them do in any order. Without, a file holds its
     own definition and names the files that must come with it.
     """
     folder = folder_name(d)
@@ -123,13 +135,14 @@ def _single_files(
             needed, others = needed[-1:], needed[:-1]
             files = [n.name.removeprefix(options.prefix) + f".{d.extension}" for n in others]
             head = _part_header(d, own.source_hash, options.prefix, files)
-        yield f"{folder}/{name}.{d.extension}", file_text(d, head, needed)
+        yield f"{folder}/{name}.{d.extension}", file_text(d, head, needed), needed
     if not d.guard:
         for s in selection.structs:
             inner = [f.type.name for f in s.type.fields if options.prefix + f.type.name in by_name]
             files = [f"{name}.{d.extension}" for name in inner]
             head = _part_header(d, selection.source_hash, options.prefix, files)
-            yield f"{folder}/{s.name}.{d.extension}", file_text(d, head, [by_name[options.prefix + s.name]])
+            alone = [by_name[options.prefix + s.name]]
+            yield f"{folder}/{s.name}.{d.extension}", file_text(d, head, alone), alone
 
 
 def _needed(own: Selection, prefix: str, by_name: Mapping[str, Definition]) -> list[str]:

@@ -9,12 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from codegen.backends import dialect
-from codegen.emit.dialect import file_name
+from codegen.emit.definition import Definition
+from codegen.emit.dialect import Dialect, file_name
+from codegen.emit.frame import file_text
 from codegen.errors import UserError
 from codegen.library import Library
 from codegen.scene.build import Builder, Outcome
 from codegen.scene.description.document import Scene, read_scene
-from codegen.scene.report.text import documented, emitted
+from codegen.scene.report.text import documented, included
 from codegen.vendor.lock import Promise
 from codegen.vendor.options import Options, key
 from codegen.vendor.plan import Plan, locked
@@ -49,18 +51,20 @@ def plan_scene(
     runtimes = {target: open_runtime(target) for target in scene.dialects}
     outcome = Builder(library, scene, runtimes, timed=False, say=say).build()
     files: dict[str, str] = {}
+    parts: dict[str, tuple[Dialect, Sequence[Definition]]] = {}
     for result in outcome.targets:
         final = documented(scene, outcome.general, result.reduced)
         extended = library.with_functions([final])
         for d in (d for d in chosen if d.target == result.target):
             one = replace(scene, dialects={d.target: d.name})
-            text = emitted(library, one, outcome.general, result.reduced, options.prefix)
-            files[file_name(d, scene.function)] = text
+            emitted, head, defined = included(library, one, outcome.general, result.reduced, options.prefix)
+            name = file_name(d, scene.function)
+            files[name], parts[name] = file_text(emitted, head, defined), (emitted, defined)
     lock = locked(extended, options, extended.select([scene.function]), files)
     told = lock.functions[scene.function]
     errors = (final.doc.entries["error"],)
     promised = {scene.function: Promise(told.signature, errors, told.source)}
-    return ScenePlan(replace(lock, functions=promised), files, extended, outcome)
+    return ScenePlan(replace(lock, functions=promised), files, extended, parts, outcome)
 
 
 def scene_dialects(path: Path, library: Library, chosen: Sequence[str]) -> tuple[str, ...]:

@@ -10,17 +10,26 @@ from codegen.passes.placement.regions import Placement, Region, place
 from codegen.passes.ssa.flow import Branch, Flow, Item, Loop, roots
 from codegen.passes.ssa.values import Values
 
+Origins = dict[int, tuple[str, int]]
+"""Line number of a statement -> function and line of the source that its value comes from."""
 
-def statements(values: Values, flow: Flow, returns: Type, parameters: dict[str, str]) -> tuple[ir.Stmt, ...]:
-    """The body of a function; `parameters` gives the final name of each parameter by its path."""
+
+def statements(
+    values: Values, flow: Flow, returns: Type, parameters: dict[str, str], line: int = 0
+) -> tuple[tuple[ir.Stmt, ...], Origins]:
+    """The body of a function, and where its statements come from.
+
+    parameters  the final name of each parameter by its path
+    line        what the statements are numbered from
+    """
     assert flow.result is not None
     result = joined(values, returns, flow.result)
-    placement = place(flow, result)
-    return _Writer(values, placement, parameters).body(flow.items, result)
+    writer = _Writer(values, place(flow, result), parameters, line)
+    return writer.body(flow.items, result), writer.origins
 
 
 class _Writer:
-    def __init__(self, values: Values, placement: Placement, parameters: dict[str, str]) -> None:
+    def __init__(self, values: Values, placement: Placement, parameters: dict[str, str], line: int) -> None:
         self.values = values
         self.placement = placement
         self.names = Names(parameters.values())
@@ -29,7 +38,8 @@ class _Writer:
         self.force_swapped(placement.root)
         self.named = named_values(values, placement, self.forced)
         self.locals: dict[int, str] = {}
-        self.line = 0
+        self.line = line
+        self.origins: Origins = {}
 
     def force_swapped(self, region: Region) -> None:
         """What a loop hands on is computed before any of it is assigned: one may need another."""
@@ -45,11 +55,14 @@ class _Writer:
         out: list[ir.Stmt] = []
         self.region(self.placement.root, out)
         self.demand(result, self.placement.root, out)
-        out.append(ir.Return(self.text(result), self.next_line()))
+        out.append(ir.Return(self.text(result), self.next_line(result)))
         return tuple(out)
 
-    def next_line(self) -> int:
+    def next_line(self, of: ir.Expr) -> int:
+        """The number of a statement about a value."""
         self.line += 1
+        if id(of) in self.values.origins:
+            self.origins[self.line] = self.values.origins[id(of)]
         return self.line
 
     def region(self, region: Region, out: list[ir.Stmt]) -> None:
@@ -66,8 +79,8 @@ class _Writer:
         for m in item.merges:
             self.variables[m.leaf.name] = self.names.give(m.name)
             start = self.start(m.then.type)
-            out.append(ir.Let(self.variables[m.leaf.name], start, True, self.next_line()))
-        condition, line = self.text(item.condition), self.next_line()
+            out.append(ir.Let(self.variables[m.leaf.name], start, True, self.next_line(m.then)))
+        condition, line = self.text(item.condition), self.next_line(item.condition)
         sides: list[tuple[ir.Stmt, ...]] = []
         for k, inner in enumerate(region.inner[id(item)]):
             found: list[ir.Stmt] = []
@@ -75,7 +88,7 @@ class _Writer:
             for m in item.merges:
                 value = m.orelse if k else m.then
                 self.demand(value, inner, found)
-                found.append(ir.Assign(self.variables[m.leaf.name], self.text(value), self.next_line()))
+                found.append(ir.Assign(self.variables[m.leaf.name], self.text(value), self.next_line(value)))
             sides.append(tuple(found))
         out.append(ir.If(condition, sides[0], sides[1], line))
 
@@ -87,10 +100,10 @@ class _Writer:
         for c in item.carried:
             name = self.names.give(c.name)
             self.variables[c.inside.name] = self.variables[c.outside.name] = name
-            out.append(ir.Let(name, self.text(c.initial), True, self.next_line()))
+            out.append(ir.Let(name, self.text(c.initial), True, self.next_line(c.following)))
         self.variables[item.index.name] = self.names.give(item.name)
         limit = None if item.limit is None else self.text(item.limit)
-        line = self.next_line()
+        line = self.next_line(item.index)
         (inner,) = region.inner[id(item)]
         found: list[ir.Stmt] = []
         self.region(inner, found)
@@ -100,10 +113,11 @@ class _Writer:
         for c in item.carried:
             if isinstance(c.following, ir.Var) and len(item.carried) > 1:
                 copies[id(c)] = self.names.give(c.name)
-                found.append(ir.Let(copies[id(c)], self.text(c.following), False, self.next_line()))
+                line_of_copy = self.next_line(c.following)
+                found.append(ir.Let(copies[id(c)], self.text(c.following), False, line_of_copy))
         for c in item.carried:
             value = ir.Var(c.following.type, copies[id(c)]) if id(c) in copies else self.text(c.following)
-            found.append(ir.Assign(self.variables[c.inside.name], value, self.next_line()))
+            found.append(ir.Assign(self.variables[c.inside.name], value, self.next_line(c.following)))
         out.append(ir.For(self.variables[item.index.name], item.start, item.stop, tuple(found), line, limit))
 
     def demand(self, e: ir.Expr, region: Region, out: list[ir.Stmt]) -> None:
@@ -116,7 +130,7 @@ class _Writer:
                 if id(x) in self.named and self.placement.homes[id(x)] is region and id(x) not in self.locals:
                     value = self.text(x)
                     self.locals[id(x)] = self.names.of(self.values, x)
-                    out.append(ir.Let(self.locals[id(x)], value, False, self.next_line()))
+                    out.append(ir.Let(self.locals[id(x)], value, False, self.next_line(x)))
             elif id(x) not in seen and id(x) not in self.locals:
                 seen.add(id(x))
                 waiting.append((x, True))

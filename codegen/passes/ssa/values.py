@@ -62,6 +62,7 @@ class Values:
     rules       tried in order on every new value
     parameters  scalar and vector parameters by their path, with what is known of them
     indices     loop variables by name, with their first and last value
+    origins     function and line that were followed when a value came about, by its id
     """
 
     rules: tuple[Rule, ...] = ()
@@ -71,6 +72,7 @@ class Values:
     hints: dict[int, Hint] = field(default_factory=dict)
     function: str = ""
     line: int = 0
+    origins: dict[int, tuple[str, int]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._known: dict[tuple[object, ...], ir.Expr] = {}
@@ -105,7 +107,11 @@ class Values:
     def intern(self, e: ir.Expr) -> ir.Expr:
         """The one object that stands for this expression over values."""
         key = _key(e)
-        return self._known.setdefault(key, e)
+        known = self._known.get(key)
+        if known is None:
+            self._known[key] = known = e
+            self.origins[id(e)] = self.function, self.line
+        return known
 
     def rebuild(self, e: ir.Expr) -> ir.Expr:
         """The value of a whole tree."""

@@ -6,6 +6,8 @@ import re
 from dataclasses import replace
 
 from codegen.backends import dialect
+from codegen.emit.definition import Definition
+from codegen.emit.dialect import Dialect
 from codegen.emit.frame import DIRECTIONS, FINITE, file_text, header
 from codegen.emit.literal import shortest
 from codegen.emit.module import DEFAULT_PREFIX, definitions, emit_selection
@@ -91,6 +93,13 @@ def emitted(
     library: Library, scene: Scene, general: General, reduced: Reduced, prefix: str = DEFAULT_PREFIX
 ) -> str:
     """The text of the target's file."""
+    return file_text(*included(library, scene, general, reduced, prefix))
+
+
+def included(
+    library: Library, scene: Scene, general: General, reduced: Reduced, prefix: str = DEFAULT_PREFIX
+) -> tuple[Dialect, list[str], list[Definition]]:
+    """The dialect, the header and the definitions of the target's file."""
     chosen = dialect(reduced.target, scene.dialects[reduced.target])
     extended = library.with_functions([documented(scene, general, reduced)])
     selection = extended.select([scene.function])
@@ -102,7 +111,7 @@ def emitted(
         f"Budget {_plain(scene.budget_text)}; source hash {selection.source_hash}",
         f"{DIRECTIONS} Colours are linear RGB. {FINITE}",
     )
-    return file_text(chosen, head, defined)
+    return chosen, head, defined
 
 
 def line_counts(
