@@ -20,19 +20,21 @@ from codegen.ir.types import Struct, Type
 from codegen.library import Library
 from codegen.names import reserved
 from codegen.passes.analysis.ranges import Ranges
-from codegen.passes.inline import Inliner
+from codegen.passes.inline import CallRule, Inliner
 from codegen.passes.placement.dead import pruned, used_parameters
 from codegen.passes.placement.schedule import statements
 from codegen.passes.rules.axes import zero_components
 from codegen.passes.rules.fold import constants as fold_constants
 from codegen.passes.rules.guards import guards
 from codegen.passes.rules.identities import identities
-from codegen.passes.rules.powers import whole_exponents
+from codegen.passes.rules.powers import ROWS, whole, whole_exponents
 from codegen.passes.rules.scalars import components
+from codegen.passes.rules.sine_powers import EXPONENT as SINE_EXPONENT
+from codegen.passes.rules.sine_powers import FUNCTION as SINE_POWER
 from codegen.passes.rules.sine_powers import whole_sine_exponents
 from codegen.passes.rules.sums import cancellation
 from codegen.passes.ssa.flow import roots
-from codegen.passes.ssa.values import Rule, Step, Values, constant_components, leaves
+from codegen.passes.ssa.values import Rule, Step, Value, Values, constant_components, leaves
 from codegen.passes.subject import Fact, Subject, is_taken_apart
 
 EXACT_KINDS = ("exact", "finite", "real")
@@ -50,6 +52,7 @@ class Specialised:
     constants   path -> value, as given
     aliases     path -> path, as given
     log         what was done, in order
+    whole       whether a power has a constant whole exponent and was left as it is
     """
 
     function: ir.Function
@@ -59,6 +62,7 @@ class Specialised:
     constants: Mapping[str, Any] = field(default_factory=dict)
     aliases: Mapping[str, str] = field(default_factory=dict)
     log: tuple[Step, ...] = ()
+    whole: bool = False
 
     def impose(self, inputs: Mapping[str, Any]) -> dict[str, Any]:
         """Inputs of the general function with the constants and aliases put in."""
@@ -135,19 +139,16 @@ def specialise(
         _learn(proofs, subject, values, fact)
     proofs.check_facts()
     values.simplify_by(exact_rules(proofs, frozenset(kinds)))
+    left_whole: set[str] = set()
+    asked = (whole_exponents(powers), whole_sine_exponents(powers)) if powers else ()
     inliner = Inliner(
-        library,
-        values,
-        keep,
-        unroll,
-        (whole_exponents(powers), whole_sine_exponents(powers)) if powers else (),
-        checked(library, variants),
+        library, values, keep, unroll, (*asked, _noting(left_whole)), checked(library, variants)
     )
     flow = pruned(inliner.flow(function, arguments))
     assert flow.result is not None
     left = used_parameters(values, [*roots(flow.items), *leaves(flow.result)])
     names = parameter_names(left, function)
-    body, origins = statements(values, flow, function.returns, names, function.place.line)
+    body = statements(values, flow, function.returns, names)
     dropped = [path for path in values.parameters if path not in left]
     for path in dropped:
         given_away = _within(path, subject.constants) or _within(path, subject.aliases)
@@ -165,13 +166,29 @@ def specialise(
         body=body,
         doc=_doc(library, function, names, subject),
         place=Place(function.place.path, function.place.line),
-        origins={
-            number: library.function(source).source_of(line) for number, (source, line) in origins.items()
-        },
     )
     return Specialised(
-        made, name, names, tuple(dropped), subject.constants, subject.aliases, tuple(values.log)
+        made,
+        name,
+        names,
+        tuple(dropped),
+        subject.constants,
+        subject.aliases,
+        tuple(values.log),
+        bool(left_whole),
     )
+
+
+def _noting(left_whole: set[str]) -> CallRule:
+    """A rule that applies nowhere and notes the powers with constant whole exponents that it meets."""
+
+    def rule(values: Values, function: ir.Function, arguments: dict[str, Value]) -> None:
+        row = ROWS.get(function.name)
+        exponent = SINE_EXPONENT if function.name == SINE_POWER else None if row is None else row.exponent
+        if exponent is not None and whole(arguments[exponent]) is not None:
+            left_whole.add(function.name)
+
+    return rule
 
 
 def exact_rules(proofs: Ranges, kinds: frozenset[str]) -> tuple[Rule, ...]:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -133,23 +134,26 @@ class Builder:
         ahead = beside(lambda: self.ahead(library, general, list(constant), pixels), forked=not self.executed)
         reducer = Reducer.of(library, self.scene, general, draw(self.scene, general, SEARCH_POINTS))
         self.check_budget(reducer.reference.rounding)
-        reduced: list[Reduced] = []
-        for target in self.scene.dialects:
-            self.say(f"searching for {target}")
-            reduced.append(reducer.reduced(Prices.of(library, target), self.scene.budget))
-            if len(reduced) == 1:
-                left = beside(lambda: self.remaining(library, reduced[0]), forked=not self.executed)
+        first, *others = self.scene.dialects
+        self.say(f"searching for {first}")
+        reduced = reducer.reduced(Prices.of(library, first), self.scene.budget)
         if not reducer.exact().function.parameters:
             raise UserError(
                 f"{self.scene.path}: nothing varies: the scene is one colour and needs no function"
             )
+        # The first search leaves much that the others take over, and then each goes its own way.
+        following = [
+            beside(partial(self.following, library, reducer, target), forked=not self.executed)
+            for target in others
+        ]
         proven, exact, single, error = ahead()
         if single is not None:
             self.results["float32", general.function.body] = single
         with self.compilers:
-            results = [self.proven(library, general, reducer, r, proven, exact) for r in reduced]
-        known = results[0].reduced is reduced[0]
-        remaining = left() if known else self.remaining(library, results[0].reduced)
+            results = [self.proven(library, general, reducer, reduced, proven, exact)]
+            self.say("probing what is left")
+            remaining = self.remaining(library, results[0].reduced)
+            results += [self.proven(library, general, reducer, f(), proven, exact) for f in following]
         for result in results:
             if result.target == "glsl":
                 result.spirv = {key: count.result() for key, count in self.counting.items()}
@@ -169,6 +173,10 @@ class Builder:
     def executed(self) -> bool:
         """Whether a driver is open."""
         return any(not isinstance(runtime, str) for runtime in self.runtimes.values())
+
+    def following(self, library: Library, reducer: Reducer, target: str) -> Reduced:
+        """The result of the search for one more target."""
+        return reducer.reduced(Prices.of(library, target), self.scene.budget)
 
     def ahead(
         self, library: Library, general: General, lights: list[ConstantLight], pixels: Floats | None

@@ -89,23 +89,29 @@ def whole_exponents(
 
     def rule(values: Values, function: ir.Function, arguments: dict[str, Value]) -> ir.Expr | None:
         row = ROWS.get(function.name)
-        if row is None:
+        power = None if row is None else whole(arguments[row.exponent], largest)
+        if row is None or power is None:
             return None
-        exponent, of = arguments[row.exponent], arguments[row.argument]
-        if not isinstance(exponent, ir.Const) or isinstance(of, dict):
+        of = arguments[row.argument]
+        if isinstance(of, dict):
             return None
-        power = float(exponent.value)
-        if power != int(power) or not 1 <= power <= largest:
-            return None
-        made = power_of(values, row.base(values, of, int(power)), int(power))
+        made = power_of(values, row.base(values, of, power), power)
         values.note(
             NAME,
-            f"{function.name}({values.show(of)}, {power:g}) -> {multiplications(int(power))} multiplications",
-            f"relative error at most {error(int(power), row.roundings):.2g} (either-way rounding), or 8e-31",
+            f"{function.name}({values.show(of)}, {power:g}) -> {multiplications(power)} multiplications",
+            f"relative error at most {error(power, row.roundings):.2g} (either-way rounding), or 8e-31",
         )
         return made
 
     return rule
+
+
+def whole(exponent: Value, largest: int = LARGEST) -> int | None:
+    """The exponent, if it is a constant whole number from 1 to `largest`."""
+    if not isinstance(exponent, ir.Const):
+        return None
+    power = float(exponent.value)
+    return int(power) if power == int(power) and 1 <= power <= largest else None
 
 
 def multiplications(power: int) -> int:

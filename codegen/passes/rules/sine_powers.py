@@ -14,10 +14,11 @@ from collections.abc import Callable
 
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32
-from codegen.passes.rules.powers import NAME, ROUNDING, least_base, multiplications, power_of
+from codegen.passes.rules.powers import NAME, ROUNDING, least_base, multiplications, power_of, whole
 from codegen.passes.ssa.values import Value, Values
 
 FUNCTION = "shell_sine_power"
+EXPONENT = "p"
 ROUNDINGS = 4
 """Roundings of the square: a product of three components, and the difference from 1."""
 
@@ -36,17 +37,14 @@ def whole_sine_exponents(largest: int) -> Callable[[Values, ir.Function, dict[st
     def rule(values: Values, function: ir.Function, arguments: dict[str, Value]) -> ir.Expr | None:
         if function.name != FUNCTION:
             return None
-        n, w, exponent = arguments["n"], arguments["w"], arguments["p"]
-        if not isinstance(exponent, ir.Const) or isinstance(n, dict) or isinstance(w, dict):
+        n, w, power = arguments["n"], arguments["w"], whole(arguments[EXPONENT], largest)
+        if power is None or isinstance(n, dict) or isinstance(w, dict):
             return None
-        power = float(exponent.value)
-        if power != int(power) or not 1 <= power <= largest:
-            return None
-        made = _power(values, n, w, int(power))
+        made = _power(values, n, w, power)
         values.note(
             NAME,
-            f"{FUNCTION}({values.show(n)}, {values.show(w)}, {power:g}) -> {_said(int(power))}",
-            f"absolute error at most {error(int(power)):.2g} (either-way rounding)",
+            f"{FUNCTION}({values.show(n)}, {values.show(w)}, {power:g}) -> {_said(power)}",
+            f"absolute error at most {error(power):.2g} (either-way rounding)",
         )
         return made
 

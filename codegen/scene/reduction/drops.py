@@ -57,7 +57,7 @@ def terms(library: Library, function: ir.Function, inputs: Mapping[str, Value]) 
     frame.seen = {}
     with np.errstate(all="ignore"):
         frame.run()
-    definitions = {s.name: s.value for s in ir.statements(function.body) if isinstance(s, ir.Let)}
+    locals_ = {s.name: _Own.of(s.value) for s in ir.statements(function.body) if isinstance(s, ir.Let)}
     found: list[tuple[int, Term]] = []
     seen: set[int] = set()
     for e in ir.expressions(function.body):
@@ -65,7 +65,7 @@ def terms(library: Library, function: ir.Function, inputs: Mapping[str, Value]) 
         if ends is None or not all(np.isfinite(ends)) or ends[0] == ends[1] == 0.0 or id(e) in seen:
             continue
         seen.add(id(e))
-        size = _size(e, definitions)
+        size = _size(e, locals_)
         found += [(size, Term(e, ir.Const(F32, value), *ends)) for value in _numbers(*ends)]
         if isinstance(e, ir.Select):
             found += [(size, Term(e, side, *ends)) for side in (e.if_false, e.if_true)]
@@ -79,21 +79,31 @@ def _numbers(low: float, high: float) -> list[float]:
     return [*nice, float(np.float32(0.5 * (low + high)))]
 
 
-def _size(e: ir.Expr, definitions: Mapping[str, ir.Expr]) -> int:
+@dataclass(frozen=True)
+class _Own:
+    """Operations of an expression itself, and the locals that it names."""
+
+    operations: int
+    names: frozenset[str]
+
+    @staticmethod
+    def of(e: ir.Expr) -> _Own:
+        nodes = list(ir.walk(e))
+        count = sum(isinstance(x, ir.Unary | ir.Binary | ir.Builtin | ir.Select) for x in nodes)
+        return _Own(count, frozenset(x.name for x in nodes if isinstance(x, ir.Var)))
+
+
+def _size(e: ir.Expr, locals_: Mapping[str, _Own]) -> int:
     """Operations below an expression, each local once."""
-    seen: set[str] = set()
-
-    def visit(x: ir.Expr) -> int:
-        total = int(isinstance(x, ir.Unary | ir.Binary | ir.Builtin | ir.Select))
-        for node in ir.walk(x):
-            if node is not x:
-                total += int(isinstance(node, ir.Unary | ir.Binary | ir.Builtin | ir.Select))
-            if isinstance(node, ir.Var) and node.name in definitions and node.name not in seen:
-                seen.add(node.name)
-                total += visit(definitions[node.name])
-        return total
-
-    return visit(e)
+    own = _Own.of(e)
+    total, seen, waiting = own.operations, set(own.names), list(own.names)
+    while waiting:
+        inner = locals_.get(waiting.pop())
+        if inner is not None:
+            total += inner.operations
+            waiting += inner.names - seen
+            seen |= inner.names
+    return total
 
 
 Parts = Mapping[int, frozenset[int]]

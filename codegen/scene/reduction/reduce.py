@@ -26,7 +26,7 @@ from codegen.scene.proof.errors import Measured, Reference
 from codegen.scene.proof.points import Points
 from codegen.scene.reduction.drops import Term, parts_of, terms, without
 from codegen.scene.reduction.knowledge import Knowledge, knowledge, model_ranges
-from codegen.scene.reduction.loosen import BUNDLES, SPLAT, loosened
+from codegen.scene.reduction.loosen import BUNDLES, SPLAT, Form, loosened
 from codegen.scene.reduction.prices import Prices
 from codegen.scene.reduction.scales import gathered
 from codegen.scene.reduction.search import Found, Search, Substitution
@@ -94,6 +94,7 @@ class Reducer:
     _screened: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
     _without: dict[tuple[ir.Stmt, ...], list[tuple[Term, ir.Function]]] = field(default_factory=dict)
     _gathered: dict[tuple[ir.Stmt, ...], ir.Function | None] = field(default_factory=dict)
+    _looser: dict[tuple[tuple[ir.Stmt, ...], str], ir.Function | None] = field(default_factory=dict)
 
     @staticmethod
     def of(library: Library, scene: Scene, general: General, points: Points) -> Reducer:
@@ -170,6 +171,8 @@ class Reducer:
 
     def powers(self, exact: Specialised, budget: float, changes: list[Change]) -> int:
         """Whole exponents as multiplications, where there are any and the budget holds their error."""
+        if not exact.whole:
+            return 0
         made = self.specialised({}, LARGEST)
         if made.function.body == exact.function.body:
             return 0
@@ -184,12 +187,20 @@ class Reducer:
 
     def needed(self, choices: dict[Path, str], powers: int) -> dict[Path, str]:
         """The choices without those in terms that the exact passes removed."""
+        paths = sorted(choices, reverse=True)
+        idle = {path for path in paths if not self.search.differ(choices, _without(choices, path))}
+        if not idle:
+            return choices  # terms that change values are there
         whole = self.specialised(choices, powers).function.body
-        for path in sorted(choices, reverse=True):
-            fewer = {p: name for p, name in choices.items() if p != path}
-            if self.search.differ(choices, fewer):
-                continue  # a term that changes values is there
-            if self.specialised(fewer, powers).function.body == whole:
+        fewest = {p: name for p, name in choices.items() if p not in idle}
+        if self.specialised(fewest, powers).function.body == whole:
+            return fewest
+        for path in paths:
+            fewer = _without(choices, path)
+            if (
+                not self.search.differ(choices, fewer)
+                and self.specialised(fewer, powers).function.body == whole
+            ):
                 choices = fewer
         return choices
 
@@ -203,13 +214,20 @@ class Reducer:
         for bundle in BUNDLES:
             function, words = made.function, []
             for form in bundle:
-                looser = loosened(function, form)
+                looser = self.looser(function, form)
                 if looser is not None:
                     function = looser
                     words.append(form.words)
             if words:
                 made = self.taken(made, function, "; ".join(words), prices, budget, changes)
         return made
+
+    def looser(self, function: ir.Function, form: Form) -> ir.Function | None:
+        """A function with a form wherever it applies; None where it does nowhere."""
+        key = function.body, form.name
+        if key not in self._looser:
+            self._looser[key] = loosened(function, form)
+        return self._looser[key]
 
     def taken(
         self,
@@ -304,6 +322,10 @@ class Reducer:
         facts = [f for f in self.knowledge.facts if all(n in names for n in _named(f[0]))]
         facts += _lengths(function)
         return specialise(library, function.name, facts=facts, new_name=self.name, unroll=UNROLLED)
+
+
+def _without(choices: dict[Path, str], path: Path) -> dict[Path, str]:
+    return {p: name for p, name in choices.items() if p != path}
 
 
 def _lengths(function: ir.Function) -> list[tuple[str, float, float]]:
