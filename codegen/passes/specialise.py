@@ -148,7 +148,7 @@ def specialise(
     assert flow.result is not None
     left = used_parameters(values, [*roots(flow.items), *leaves(flow.result)])
     names = parameter_names(left, function)
-    body = statements(values, flow, function.returns, names)
+    body, origins = statements(values, flow, function.returns, names, function.place.line)
     dropped = [path for path in values.parameters if path not in left]
     for path in dropped:
         given_away = _within(path, subject.constants) or _within(path, subject.aliases)
@@ -166,6 +166,9 @@ def specialise(
         body=body,
         doc=_doc(library, function, names, subject),
         place=Place(function.place.path, function.place.line),
+        origins={
+            number: library.function(source).source_of(line) for number, (source, line) in origins.items()
+        },
     )
     return Specialised(
         made,
