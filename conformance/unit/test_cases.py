@@ -13,8 +13,17 @@ from conformance.cases.parameters import leaves
 from conformance.cases.registry import build
 from conformance.cases.stream import SMALLEST_NORMAL, neighbour
 from conformance.cases.table import DATA, text
-from conformance.unit.checks import CHECKS
-from conformance.unit.signatures import FUNCTIONS, Finite, Function, Interval, Length, Parameter, Struct, Unit
+from conformance.unit.reference.checks import CHECKS
+from conformance.unit.reference.signatures import (
+    FUNCTIONS,
+    Finite,
+    Function,
+    Interval,
+    Length,
+    Parameter,
+    Struct,
+    Unit,
+)
 
 
 @pytest.mark.parametrize("name", cases.FAMILIES)

@@ -32,7 +32,7 @@ from conformance.picture.tone import steps_apart
 from conformance.picture.visibility import Camera
 from conformance.unit.support.drivers import need
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 SCENES = ROOT / "examples" / "scenes"
 FURRY = (SCENES / "furry-bunny.toml").read_text(encoding="utf-8")
 Samples = np.ndarray[Any, np.dtype[np.float32]]

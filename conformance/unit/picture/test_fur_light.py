@@ -37,7 +37,7 @@ from conformance.picture.tone import steps_apart
 from conformance.unit.support.drivers import need
 from targets import TargetUnavailable, probe
 
-SCENE = Path(__file__).parents[2] / "examples" / "scenes" / "dawn-bunny.toml"
+SCENE = Path(__file__).parents[3] / "examples" / "scenes" / "dawn-bunny.toml"
 DAWN = SCENE.read_text(encoding="utf-8")
 LIBRARY = load_library()
 ABOVE = Light((0.0, 1.0, 0.0), (1.0, 1.0, 1.0))

@@ -24,7 +24,7 @@ from conformance.picture.tone import steps_apart
 from conformance.unit.support.drivers import need
 from targets import TargetUnavailable, probe
 
-SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+SCENES = Path(__file__).parents[3] / "examples" / "scenes"
 LIBRARY = load_library()
 
 

@@ -22,7 +22,7 @@ from conformance.picture.visibility import Camera, Visibility, see
 
 Doubles = npt.NDArray[np.float64]
 
-SCENE = Path(__file__).parents[2] / "examples" / "scenes" / "brushed-bunny.toml"
+SCENE = Path(__file__).parents[3] / "examples" / "scenes" / "brushed-bunny.toml"
 SMALL = (256, 256)
 LIT = 0.05  # least n.l of the samples that are looked at: the inherited shadow is divided out
 

@@ -15,7 +15,7 @@ from conformance.picture.render import Studio, set_up
 from conformance.picture.tolerances import tolerance
 from conformance.picture.tone import steps_apart
 
-SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+SCENES = Path(__file__).parents[3] / "examples" / "scenes"
 MESH = SCENES.parent / "data" / "bunny.obj"
 
 

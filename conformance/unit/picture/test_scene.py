@@ -16,7 +16,7 @@ from conformance.picture.mesh import read_mesh
 from conformance.picture.scene import Range, read_scene
 from conformance.picture.shade import Models, Shading, Slot, bind
 
-SCENES = Path(__file__).parents[2] / "examples" / "scenes"
+SCENES = Path(__file__).parents[3] / "examples" / "scenes"
 GOOD = (SCENES / "brushed-bunny.toml").read_text(encoding="utf-8")
 
 

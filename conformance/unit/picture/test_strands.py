@@ -39,7 +39,7 @@ from targets import TargetUnavailable, probe
 from targets.packages import find_tool
 from targets.wgsl import validate as wgsl
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 SCENES = ROOT / "examples" / "scenes"
 MOHAWK = ROOT / "examples" / "data" / "mohawk.tfx"
 WHOLE = ROOT.parent / "shared" / "data" / "strands" / "Ratboy_mohawk.tfx"

@@ -1,4 +1,4 @@
-"""The tolerances of conformance/reference_checks.toml."""
+"""The tolerances of checks.toml."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-FILE = Path(__file__).parents[1] / "reference_checks.toml"
+FILE = Path(__file__).parent / "checks.toml"
 CHECKS: dict[str, Any] = tomllib.loads(FILE.read_text(encoding="utf-8"))
 
 

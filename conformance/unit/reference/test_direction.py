@@ -10,8 +10,8 @@ import pytest
 
 from conformance import cases
 from conformance.reference import ambiguous, direction, numeric
-from conformance.unit.checks import bound
-from conformance.unit.signatures import FUNCTIONS
+from conformance.unit.reference.checks import bound
+from conformance.unit.reference.signatures import FUNCTIONS
 
 
 def largest(x: npt.ArrayLike) -> float:

@@ -16,9 +16,9 @@ from conformance.statistics.hair_field import Hairs, field_opacity
 from conformance.statistics.tangent_field import pair_of_directions, scattered_tangents, tuft_highlight
 from conformance.unit.support.tolerances import tolerance
 
-CHECKS: dict[str, Any] = tomllib.loads(
-    Path(__file__).with_name("scene_reference_checks.toml").read_text(encoding="utf-8")
-)["fakefur"]
+CHECKS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))[
+    "fakefur"
+]
 SEED = 20100419
 
 

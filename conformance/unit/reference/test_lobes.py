@@ -16,9 +16,9 @@ from conformance.statistics.evaluator import LobeEvaluator, grid_pairs, lobe_eva
 from conformance.statistics.furnace import albedo_by_quadrature, albedo_by_samples, reciprocity_defect
 from conformance.statistics.quadrature import sphere_integral
 
-CHECKS: dict[str, Any] = tomllib.loads(
-    Path(__file__).with_name("scene_reference_checks.toml").read_text(encoding="utf-8")
-)["lobes"]
+CHECKS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))[
+    "lobes"
+]
 TABLE = CHECKS["table"]
 SEED = 2010
 NOT_ITS_OWN = 1e-9

@@ -16,9 +16,9 @@ from conformance import cases
 from conformance.reference import ambiguous
 from conformance.reference.lobes import LOBES, REFERENCES
 
-CHECKS: dict[str, Any] = tomllib.loads(
-    Path(__file__).with_name("scene_reference_checks.toml").read_text(encoding="utf-8")
-)["lobes"]["multiprecision"]
+CHECKS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))[
+    "lobes"
+]["multiprecision"]
 
 Vector = tuple[Any, Any, Any]
 

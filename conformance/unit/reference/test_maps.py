@@ -11,9 +11,9 @@ from conformance.reference import maps
 from conformance.statistics.sphere_maps import solid_angle_per_area, texel_centres
 from conformance.unit.support.tolerances import tolerance
 
-CHECKS: dict[str, Any] = tomllib.loads(
-    Path(__file__).with_name("scene_reference_checks.toml").read_text(encoding="utf-8")
-)["maps"]
+CHECKS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))[
+    "maps"
+]
 SPHERE = 4.0 * np.pi
 SEED = 2007
 

@@ -11,9 +11,9 @@ from mpmath import mp, mpf
 
 from conformance import cases
 from conformance.reference import ambiguous, reference_for
-from conformance.unit.checks import CHECKS, bound
-from conformance.unit.multiprecision import FORMS
-from conformance.unit.signatures import FUNCTIONS
+from conformance.unit.reference.checks import CHECKS, bound
+from conformance.unit.reference.multiprecision import FORMS
+from conformance.unit.reference.signatures import FUNCTIONS
 
 ROWS = 16
 SEED = 7

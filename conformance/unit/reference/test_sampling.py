@@ -12,9 +12,9 @@ from conformance.reference import sampling
 from conformance.statistics.sphere_maps import solid_angle_per_area
 from conformance.unit.support.tolerances import tolerance
 
-CHECKS: dict[str, Any] = tomllib.loads(
-    Path(__file__).with_name("scene_reference_checks.toml").read_text(encoding="utf-8")
-)["sampling"]
+CHECKS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))[
+    "sampling"
+]
 SEED = 1997
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from conformance.reference import shells
 from conformance.unit.support.tolerances import tolerance
 
-CHECKS: dict[str, Any] = tomllib.loads(
-    Path(__file__).with_name("scene_reference_checks.toml").read_text(encoding="utf-8")
-)["shells"]
+CHECKS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("figures.toml").read_text(encoding="utf-8"))[
+    "shells"
+]
 SEED = 2001
 
 

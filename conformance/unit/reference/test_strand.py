@@ -11,8 +11,8 @@ import pytest
 from conformance import cases
 from conformance.cases.stream import Stream, single
 from conformance.reference import REFERENCES, ambiguous, reference_for, strand
-from conformance.unit.checks import bound
-from conformance.unit.signatures import FUNCTIONS
+from conformance.unit.reference.checks import bound
+from conformance.unit.reference.signatures import FUNCTIONS
 
 TRIPLES = (
     "uniform",
