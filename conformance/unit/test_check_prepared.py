@@ -19,9 +19,10 @@ from codegen.intervals import Cause, Permitted, permitted
 from codegen.library import load_library
 from conformance.check import ahead, prepared
 from conformance.check.ahead import prepared_ahead
-from conformance.check.draws import draws
+from conformance.check.draws import Draw, draws
 from conformance.check.prepared import find_reference, has_reference, prepare, shared
 from conformance.reference import ambiguous
+from conformance.unit.support.sources import library_of
 
 NAME = "half_vector"
 
@@ -62,6 +63,23 @@ def test_costly_function_is_followed_in_part() -> None:
         assert equal(found.low[lanes], wanted.low[lanes]) and equal(found.high[lanes], wanted.high[lanes])
         assert equal(found.guaranteed[lanes], wanted.guaranteed[lanes])
         assert all(found.cause(k) == wanted.cause(k) for k in np.flatnonzero(lanes))
+
+
+FORKS = """def probe(a: X, b: X) -> f32:
+    x = a + b
+    s = 1.0 if x >= 0.0 else -1.0
+    return 1.0 / (s + x)
+"""
+
+
+def test_any_other_function_is_followed_on_every_lane(tmp_path: Path) -> None:
+    library = library_of(tmp_path, FORKS)
+    lanes = 3 * prepared.FOLLOWED
+    a = np.full(lanes, 2.0**-127, np.float32)  # may be read as 0, so that the sign of a sum is open
+    ready = prepare(library, "probe", [Draw("uniform", lanes, 1, {"a": a, "b": -a / 2})])
+    found: Any = ready.permitted("wgsl")
+    assert found.guaranteed.all()
+    assert not permitted(library, "probe", ready.sample.inputs, "wgsl", follow_forks=False).guaranteed.any()
 
 
 def test_narrower_intervals_bring_their_causes_along() -> None:
