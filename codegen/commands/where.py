@@ -27,7 +27,7 @@ from codegen.lines.where import Message, annotated, origin_of
     help="The line of the host's text in which the emitted file begins.",
 )
 def command(map_file: Path, line: int | None, log: Path | None, first: int) -> None:
-    """Say which source line a line of an emitted file comes from, by the map of vair emit --map."""
+    """Say which source line a line of an emitted file comes from, by the map that --map wrote."""
     found = read_map(map_file)
     if (line is None) == (log is None):
         raise UserError("vair where needs a line of the emitted file, or a compiler's messages by --log")

@@ -97,7 +97,7 @@ def read_map(path: Path) -> LineMap:
     """A map that `vair emit --map` wrote; raises UserError for anything else."""
     data = read_json(path)
     if not isinstance(data, dict) or "map" not in data:
-        raise UserError(f"{path}: is no map of vair emit --map")
+        raise UserError(f"{path}: is no line map; --map of vair emit, vendor and scene writes one")
     if data.get("format") != FORMAT:
         raise UserError(f"{path}: has format {data.get('format')}; this is vair {VERSION}, format {FORMAT}")
     try:

@@ -208,7 +208,7 @@ def test_places_outside_of_the_file_have_no_origin() -> None:
             "WGSL has no line directives; --map FILE.json says",
         ),
         (["where", "none.json", "3"], "none.json: there is no such file"),
-        (["where", "other.json", "3"], "other.json: is no map of vair emit --map"),
+        (["where", "other.json", "3"], "other.json: is no line map; --map of vair emit"),
         (["where", "map.json"], "needs a line of the emitted file, or a compiler's messages by --log"),
         (["where", "map.json", "999"], "line 999 is not in the emitted file, which takes lines 1 to 9"),
         (["where", "new.json", "3"], "new.json: has format 2"),

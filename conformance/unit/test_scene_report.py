@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import copy
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ import numpy as np
 import pytest
 
 from codegen.cli import run
+from codegen.library import default_root
+from codegen.lines.linemap import Origin, read_map
 from codegen.maps.image import exr
 from codegen.scene.report.markdown import as_markdown
 from codegen.scene.report.spirv import glslang
@@ -43,6 +46,7 @@ environment = "sky.exr"
 environment_lights = 2
 colour = { min = 0.0, max = 0.3 }
 """
+ROOT = default_root().parent
 SPEED = {"ns": 20.0, "low": 19.0, "high": 21.0, "build_seconds": 0.25}
 
 
@@ -51,7 +55,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("scene")
     (made / "scene.toml").write_text(SCENE, encoding="utf-8")
     (made / "sky.exr").write_bytes(exr(np.random.default_rng(3).random((8, 16, 3))))
-    assert run(["scene", str(made / "scene.toml"), "-o", str(made / "out"), "--no-drivers"]) == 0
+    options = ["-o", str(made / "out"), "--map", str(made / "maps"), "--no-drivers"]
+    assert run(["scene", str(made / "scene.toml"), *options]) == 0
     return made / "out"
 
 
@@ -104,6 +109,33 @@ def test_it_counts_before_and_after(data: dict[str, Any]) -> None:
             assert min(spirv["general"], spirv["final"]) > 10  # general has one text for all lights
         else:
             assert spirv is None or set(spirv.values()) == {None}
+
+
+def test_lines_lead_to_the_library(
+    data: dict[str, Any], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Statements of functions that were called lead there; those of the scene's own sum, to the scene."""
+    for target in data["targets"]:
+        found = read_map(folder.parent / "maps" / f"{target['file']}.json")
+        told = {}
+        for number, line in enumerate((folder / target["file"]).read_text().splitlines(), 1):
+            if line and not line.startswith(("//", "#")):
+                told[line] = found.origins[number]
+        files = {origin.file for origin in told.values()}
+        assert {"scene.toml", "shaderlib/fakefur/fakefur_shade.py"} <= files
+        assert all(name == "scene.toml" or (ROOT / name).is_file() for name in files)
+        kept = [(m[1], line) for line in told if (m := re.search(r"\b(square_[lv]|sin_[lv]) = ", line))]
+        assert kept
+        for name, line in kept:
+            assert f"{name} = " in source_line(told[line]), line
+    path = folder.parent / "maps" / f"{data['targets'][0]['file']}.json"
+    number = next(k for k, origin in read_map(path).origins.items() if origin.file.endswith("shade.py"))
+    assert run(["where", str(path), str(number)]) == 0
+    assert capsys.readouterr().out.startswith("shaderlib/fakefur/fakefur_shade.py:")
+
+
+def source_line(origin: Origin) -> str:
+    return (ROOT / origin.file).read_text(encoding="utf-8").splitlines()[origin.line - 1]
 
 
 def test_the_dearest_parameter_is_the_first(data: dict[str, Any]) -> None:

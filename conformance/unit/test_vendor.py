@@ -15,6 +15,8 @@ from pathlib import Path
 import pytest
 
 from codegen.errors import UserError
+from codegen.library import default_root
+from codegen.lines.linemap import read_map
 from codegen.vendor.install import install
 from codegen.vendor.lock import NAME, lock_text, read_lock
 from codegen.vendor.options import SCENE_ALONE, choose_dialects
@@ -74,6 +76,37 @@ def test_bad_options_get_one_sentence(
     status, out, err = vair(capsys, "vendor", tmp_path / "v", *arguments)
     assert (status, out, err) == (2, "", f"vair: {sentence}\n")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("options", [(), ("--per-function",)], ids=["together", "apart"])
+def test_maps_lead_from_every_file_to_the_library(
+    options: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, maps = tmp_path / "v", tmp_path / "maps"
+    chosen = ("--function", "strand_specular", "--dialect", "es300", "--dialect", "wgsl", *options)
+    assert vair(capsys, "vendor", folder, *chosen)[0] == 0
+    assert vair(capsys, "vendor", folder, "--map", maps)[0] == 0
+    files = [name for name in content(folder) if name != NAME]
+    assert sorted(content(maps)) == sorted(f"{name}.json" for name in files)
+    for name in files:
+        found = read_map(maps / f"{name}.json")
+        lines = (folder / name).read_text().splitlines()
+        assert found.lines == len(lines)
+        assert {n for n, line in enumerate(lines, 1) if line and line[0] not in "/#"} == set(found.origins)
+        for number, origin in found.origins.items():
+            if lines[number - 1].startswith(("float ", "fn ")):
+                source = (default_root().parent / origin.file).read_text().splitlines()[origin.line - 1]
+                assert f"def {origin.function.removeprefix('vair_')}(" in source
+    assert vair(capsys, "verify", folder, "--no-drivers")[0] == 0
+
+
+def test_maps_among_the_files_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "v"
+    for maps in (folder, folder / "maps"):
+        status, _, err = vair(capsys, "vendor", folder, "--function", "sin_angle", "--map", maps)
+        assert (status, err.count("\n")) == (2, 1)
+        assert "would be files that vair verify does not expect" in err
+    assert not folder.exists()
 
 
 def test_lock_is_read_as_it_was_written(small: Plan, other: Plan, tmp_path: Path) -> None:
