@@ -22,6 +22,8 @@ class Dialect:
     qualifier    what stands before a function definition ("" for none)
     declaration  order of name and type: "type name" or "name: type"
     float_suffix of float literals
+    typed_suffix of float literals in operations on literals alone, where one without it has no width and the
+                 target computes in double precision ("" where literals are of single precision)
     vectors      "call": vec3(a, b), "cast": (float3)(a, b)
     structs      constructors: "call": S(a, b), "compound": (S){a, b}
     conversions  "call": float(x), "cast": (float)x
@@ -49,6 +51,7 @@ class Dialect:
     qualifier: str = ""
     declaration: Literal["type name", "name: type"] = "type name"
     float_suffix: str = ""
+    typed_suffix: str = ""
     vectors: Literal["call", "cast"] = "call"
     structs: Literal["call", "compound"] = "call"
     conversions: Literal["call", "cast"] = "call"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from codegen.emit.dialect import Dialect
 from codegen.emit.literal import literal
 from codegen.emit.precedence import CONDITION, LEFT, RIGHT, level
@@ -15,6 +17,24 @@ _TESTS = frozenset({"comparison", "and", "or"})
 _CONDITIONAL_PARTS = CONDITION | {"primary"}
 
 
+def is_constant(e: ir.Expr) -> bool:
+    """Whether an expression is made of literals alone, so that a compiler computes it."""
+    match e:
+        case ir.Const():
+            return True
+        case ir.Unary() | ir.Convert():
+            return is_constant(e.operand)
+        case ir.Binary():
+            return is_constant(e.left) and is_constant(e.right)
+        case ir.Builtin() | ir.Construct():
+            return all(map(is_constant, e.args))
+        case ir.Swizzle():
+            return is_constant(e.value)
+        case ir.Select():
+            return is_constant(e.condition) and is_constant(e.if_true) and is_constant(e.if_false)
+    return False
+
+
 class ExprPrinter:
     """Prints expressions of one dialect; one method per kind of node."""
 
@@ -23,6 +43,9 @@ class ExprPrinter:
 
     def show(self, e: ir.Expr) -> str:
         """The text of an expression."""
+        if self.dialect.typed_suffix and isinstance(e, ir.Binary | ir.Builtin) and is_constant(e):
+            single = replace(self.dialect, float_suffix=self.dialect.typed_suffix, typed_suffix="")
+            return ExprPrinter(single).show(e)
         match e:
             case ir.Const():
                 return literal(e, self.dialect)

@@ -145,6 +145,31 @@ def test_comparisons_among_arguments_open_no_template() -> None:
             assert ExprPrinter(dialect).show(ir.Call(F32, "f", args)) == wanted
 
 
+def test_operations_on_literals_alone_are_single_precision() -> None:
+    """WGSL computes 0.7 + 0.1 in double precision, and 0.7f + 0.1f as the other targets do."""
+    wgsl = next(d for d in ONE_PER_TARGET if d.target == "wgsl")
+    x, seven, one = ir.Var(F32, "x"), ir.Const(F32, 0.7), ir.Const(F32, 0.1)
+    literals = ir.Binary(F32, "+", seven, one)
+    pair = ir.Construct(VALUE_TYPES["vec2"], (seven, one))
+    texts: dict[str, ir.Expr] = {
+        "0.7f + 0.1f": literals,
+        "x * (0.7f + 0.1f)": ir.Binary(F32, "*", x, literals),
+        "max(0.7f, 0.1f) * x": ir.Binary(F32, "*", ir.Builtin(F32, "max", (seven, one)), x),
+        "(vec2<f32>(0.7f, 0.1f) * 0.7f).x": ir.Swizzle(F32, ir.Binary(pair.type, "*", pair, seven), "x"),
+        "0.7f < 0.1f": ir.Binary(BOOL, "<", seven, one),
+        "select(0.7f, 0.1f, true) * (-0.7f)": ir.Binary(
+            F32, "*", ir.Select(F32, ir.Const(BOOL, True), one, seven), ir.Const(F32, -0.7)
+        ),
+        "0.7 * x + 0.1": ir.Binary(F32, "+", ir.Binary(F32, "*", seven, x), one),
+        "vec2<f32>(0.7, 0.1)": pair,
+        "f(0.7) + 0.1": ir.Binary(F32, "+", ir.Call(F32, "f", (seven,)), one),
+    }
+    for wanted, e in texts.items():
+        assert ExprPrinter(wgsl).show(e) == wanted
+    others = {ExprPrinter(d).show(literals) for d in ONE_PER_TARGET if d is not wgsl}
+    assert others == {"0.7 + 0.1", "0.7f + 0.1f"}
+
+
 def test_conditional_keeps_its_sides() -> None:
     e = ir.Select(VEC3, ir.Var(VALUE_TYPES["bool"], "c"), ir.Var(VEC3, "a"), ir.Var(VEC3, "b"))
     texts = [ExprPrinter(d).show(e) for d in ONE_PER_TARGET]

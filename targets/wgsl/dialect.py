@@ -24,6 +24,7 @@ DIALECTS = {
             "hvec4": "vec4<f16>",
         },
         declaration="name: type",
+        typed_suffix="f",
         half_suffix="h",
         half_enable="enable f16;",
         conditional="select",
