@@ -14,6 +14,7 @@ import pytest
 
 from codegen.backends import dialect
 from codegen.emit.stmt import StmtPrinter
+from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Interval
@@ -65,6 +66,7 @@ def test_loops_compute_what_they_did(tmp_path: Path, unroll: int) -> None:
     np.testing.assert_array_equal(special, evaluate(library, "f", x))
 
 
+PAIR = '@struct\nclass Pair:\n    """A pair."""\n    first: X\n    second: X\n'
 CONTROL = {
     "swap": (
         "    a = x\n    b = k\n    for i in range(9):\n        c = a\n        a = b\n        b = c\n"
@@ -88,13 +90,49 @@ CONTROL = {
         "    y = 1.0\n    z = 2.0\n    if x < k:\n        y = exp(x)\n        z = y * log(3.0 + k)\n"
         "    return y + z\n"
     ),
+    "struct of one side": (
+        "    pair = Pair(x, k)\n    if x < k:\n        pair = Pair(exp(x), log(3.0 + k) * exp(k))\n"
+        "    return pair.first - 2.0 * pair.second\n"
+    ),
+    "struct that keeps a field": (
+        "    pair = Pair(x, k)\n    if x < 0.5:\n        pair = Pair(x * 2.0, k)\n"
+        "    return pair.first + pair.second\n"
+    ),
+    "struct in a loop": (
+        "    pair = Pair(x, k)\n    for i in range(9):\n"
+        "        pair = Pair(pair.second * 0.5 + 1.0, pair.first)\n    return pair.first - pair.second\n"
+    ),
+    "nothing changes": (
+        "    y = x\n    z = k\n    for i in range(9):\n        y = y + 0.25\n        z = k\n"
+        "    return y * z\n"
+    ),
+    "loop in a loop": (
+        "    y = x\n    z = 0.0\n    for i in range(2, 7):\n        for j in range(6):\n"
+        "            y = y * 0.5 + f32(i) * k\n            z = z + f32(j)\n        y = y - z * 0.01\n"
+        "    return y + z\n"
+    ),
+    "branch on the number": (
+        "    y = x\n    for i in range(7):\n        if i == 3:\n            y = y + k\n        else:\n"
+        "            y = y * 0.5\n    return y\n"
+    ),
+    "loop of one side": (
+        "    y = k\n    if x > 0.0:\n        for i in range(6):\n            y = y * x\n    return y\n"
+    ),
+    "truth that is carried": (
+        "    found = x > 2.0\n    y = x\n    for i in range(8):\n        y = y + k\n"
+        "        found = found or y > 2.5\n    return 1.0 if found else 0.0\n"
+    ),
+    "number of one side": (
+        "    n = u32(3)\n    if x > k:\n        n = u32(abs(x) + exp(k)) * u32(7) + u32(exp(abs(x)))\n"
+        "    return f32(n)\n"
+    ),
     "loop without use": "    y = x\n    for i in range(30):\n        y = exp(y)\n    return k\n",
 }
 
 
 @pytest.mark.parametrize("name", CONTROL)
 def test_control_flow_computes_what_it_did(tmp_path: Path, name: str) -> None:
-    library = library_of(tmp_path, "def f(x: X, k: X) -> f32:\n" + CONTROL[name])
+    library = library_of(tmp_path, PAIR + "def f(x: X, k: X) -> f32:\n" + CONTROL[name])
     found = specialise(library, "f", new_name="g", unroll=4)
     verify(found.function, no_function)
     a, b = np.meshgrid(np.linspace(-2.0, 3.0, 23), np.linspace(-1.0, 2.0, 17))
@@ -106,6 +144,69 @@ def test_control_flow_computes_what_it_did(tmp_path: Path, name: str) -> None:
     np.testing.assert_array_equal(np.broadcast_to(special, general.shape), general)
     if name == "loop without use":
         assert lines(found) == ["return k;"]
+
+
+LIMITED = (
+    "def f(x: X, n: u32) -> f32:\n    y = x\n    for i in range(min(n, 6)):\n        y = y * 0.5 + f32(i)\n"
+    "    return y\n"
+)
+
+
+@pytest.mark.parametrize("n", [None, 0, 3, 6, 9])
+@pytest.mark.parametrize("unroll", [0, 8])
+def test_loop_that_a_parameter_ends(tmp_path: Path, n: int | None, unroll: int) -> None:
+    library = library_of(tmp_path, LIMITED)
+    known = {} if n is None else {"n": n}
+    found = specialise(library, "f", constants=known, new_name="g", unroll=unroll)
+    verify(found.function, no_function)
+    loops = [s for s in ir.statements(found.function.body) if isinstance(s, ir.For)]
+    assert len(loops) == (1 if n is None or (n > 0 and not unroll) else 0)
+    x = np.repeat(np.linspace(-1.0, 2.0, 12).astype(np.float32), 9)
+    inputs = found.impose({"x": x, "n": np.tile(np.arange(9, dtype=np.uint32), 12)})
+    special = evaluate(library.with_functions([found.function]), "g", found.arguments(inputs))
+    np.testing.assert_array_equal(special, evaluate(library, "f", inputs))
+
+
+RETURNING = (
+    "def f(x: X, n: u32) -> f32:\n    y = x\n    for i in range({}):\n        if y > 3.0:\n"
+    "            return y\n        y = y + 0.5\n    return -y\n"
+)
+
+
+def test_loop_that_may_return_is_unrolled_or_refused(tmp_path: Path) -> None:
+    refused = {
+        "min(n, 4)": 'over "i" that may return ends at a value that is not known',
+        "1025": "at most 1024",
+    }
+    for k, (end, why) in enumerate(refused.items()):
+        library = library_of(tmp_path / str(k), RETURNING.format(end))
+        with pytest.raises(UserError, match=why):
+            specialise(library, "f")
+    library = library_of(tmp_path / "known", RETURNING.format("min(n, 9)"))
+    found = specialise(library, "f", constants={"n": 4}, new_name="g")
+    inputs = found.impose({"x": np.linspace(-1.0, 4.0, 50).astype(np.float32), "n": 0})
+    special = evaluate(library.with_functions([found.function]), "g", found.arguments(inputs))
+    np.testing.assert_array_equal(special, evaluate(library, "f", inputs))
+
+
+def test_kept_call_gives_back_a_struct(tmp_path: Path) -> None:
+    text = (
+        PAIR + "@helper\ndef h(x: X) -> Pair:\n    return Pair(x * 2.0, x + 1.0)\n"
+        "def f(x: X, k: X) -> f32:\n    pair = h(k)\n    return pair.first * x - h(x).second + pair.second\n"
+    )
+    library = library_of(tmp_path, text)
+    found = specialise(library, "f", keep={"h"}, new_name="g")
+    calls = [e for e in ir.expressions(found.function.body) if isinstance(e, ir.Call)]
+    assert {c.function for c in calls} == {"h"}
+    x = {name: np.linspace(-1.0, 2.0, 50).astype(np.float32) for name in ("x", "k")}
+    special = evaluate(library.with_functions([found.function]), "g", x)
+    np.testing.assert_array_equal(special, evaluate(library, "f", x))
+
+
+def test_power_inside_a_call_becomes_products_too(tmp_path: Path) -> None:
+    found = specialise(LIBRARY, "strand_specular", constants={"exponent": 8.0}, new_name="f", powers=64)
+    assert [s for s in found.log if s.name == "powers"]
+    assert not [e for e in ir.expressions(found.function.body) if isinstance(e, ir.Builtin) and e.op == "exp"]
 
 
 def test_whole_exponents_become_products_only_when_asked() -> None:
