@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from codegen.intervals.accuracy import Row, Ulp
+from codegen.intervals.accuracy import Absolute, Row, Ulp
 from codegen.intervals.compiled import ends, kernels
 from codegen.intervals.context import Context
 from codegen.intervals.numbers import Array
@@ -112,11 +112,11 @@ def divide(context: Context, row: Row, x: Range, y: Range) -> Found | None:
     if not count or "x" in row.magnitude or row.normal:
         return None
     assert isinstance(row.accuracy, Ulp)
-    low, high, look = kernels().divide(*_ends(x), *_ends(y), row.accuracy.ulps, *_limits(row, "y"), count)
+    low, high, look = kernels().divide(*_ends(x), *_ends(y), row.accuracy.ulps, *limits(row, "y"), count)
     return low, high, look, None
 
 
-def _limits(row: Row, operand: str) -> tuple[float, float]:
+def limits(row: Row, operand: str) -> tuple[float, float]:
     """Least and largest magnitude of an operand for which the row promises something."""
     if operand not in row.magnitude:
         return _NEVER_NEAR, _NEVER_FAR
@@ -135,6 +135,17 @@ def within_ulp(
     return low, high, look, None
 
 
+def absolute_or_ulp(context: Context, promise: Absolute, x: Range, low: Array, high: Array) -> Found | None:
+    """Float32 results within an absolute bound where x lies in its interval, within some ULP elsewhere."""
+    count = _lanes(context, x)
+    if not count or promise.elsewhere is None:
+        return None
+    low, high, look = kernels().absolute_or_ulp(
+        x.low, x.high, low, high, promise.bound, *promise.within, promise.elsewhere.ulps, count
+    )
+    return low, high, look, None
+
+
 def square_root(context: Context, x: Range, root: Row, quotient: Row) -> Found | None:
     """1 / (1 / sqrt(x)); looked at where x may be negative as well."""
     count = _lanes(context, x)
@@ -142,7 +153,7 @@ def square_root(context: Context, x: Range, root: Row, quotient: Row) -> Found |
         return None
     assert isinstance(root.accuracy, Ulp) and isinstance(quotient.accuracy, Ulp)
     low, high, look = kernels().square_root(
-        *_ends(x), root.accuracy.ulps, quotient.accuracy.ulps, *_limits(quotient, "y"), count
+        *_ends(x), root.accuracy.ulps, quotient.accuracy.ulps, *limits(quotient, "y"), count
     )
     return low, high, look, None
 

@@ -112,7 +112,10 @@ def logarithm(context: Context, name: str, x: Range) -> Range:
     if isinstance(row.accuracy, Ulp):
         return settled_within_ulp(context, low, high, row.accuracy.ulps, row.accuracy.ulps, codes)
     assert isinstance(row.accuracy, Absolute)
-    low, high = _absolute_or_ulp(row.accuracy, Range(positive_low, positive_high), low, high)
+    positive = Range(positive_low, positive_high)
+    if (quick := bulk.absolute_or_ulp(context, row.accuracy, positive, low, high)) is not None:
+        return checked(context, quick, codes)
+    low, high = _absolute_or_ulp(row.accuracy, positive, low, high)
     return settle(context, low, high, codes)
 
 

@@ -23,6 +23,7 @@ import pytest
 
 from codegen.evaluate import evaluate
 from codegen.intervals import load_table, numbers, permit, permitted, whole
+from codegen.intervals.threads import VARIABLE
 from codegen.intervals.values import Whole
 from conformance.unit.support.sources import library_of
 from conformance.unit.support.tolerances import tolerance
@@ -255,7 +256,7 @@ def test_chunks_at_a_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(permit, "CHUNK", 100)
     found = []
     for threads in (1, 3):
-        monkeypatch.setattr(permit, "THREADS", threads)
+        monkeypatch.setenv(VARIABLE, str(threads))
         found.append(permitted(library, "probe", {"x": x}, "wgsl"))
     one, three = found
     assert one.causes == three.causes and len(one.causes) > 0
