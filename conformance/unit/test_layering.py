@@ -8,7 +8,8 @@ directions of the design:
   targets                 never another target; outside dialect files nothing of the project but targets
   conformance.reference   numpy, scipy, mpmath and the standard library
   everything else         not conformance
-A GPU package is imported where a device is opened, so that importing a module never needs a driver.
+A GPU package is imported where a device is opened, so that importing a module never needs a driver. No module
+imports itself through others, not even late, inside a function.
 """
 
 import ast
@@ -16,6 +17,8 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -69,6 +72,7 @@ def walk(node: ast.AST, at_import: bool = True) -> Iterator[tuple[ast.AST, bool]
         yield from walk(child, at_import and not deferred)
 
 
+@cache
 def imports(path: str) -> list[Import]:
     found = []
     for node, at_import in walk(ast.parse((ROOT / path).read_text(encoding="utf-8"), path)):
@@ -158,6 +162,25 @@ def test_nothing_imports_conformance(path: str) -> None:
 def test_gpu_packages_are_imported_where_a_device_is_opened(path: str) -> None:
     bad = [item for item in imports(path) if item.package in GPU_PACKAGES and item.at_import]
     refuse(path, bad, "importing a module must not need a driver; import the GPU package inside the function")
+
+
+def file_of(name: str) -> str | None:
+    """The file of a dotted name that is a module, a package or something inside one."""
+    stem = name.replace(".", "/")
+    candidates = (f"{stem}.py", f"{stem}/__init__.py")
+    return next((path for path in candidates if (ROOT / path).is_file()), None)
+
+
+def test_no_circle_of_imports() -> None:
+    graph: dict[str, set[str]] = {}
+    for path in (path for folder in sorted(PROJECT) for path in files_under(folder)):
+        names = {item.name for item in imports(path) if item.package in PROJECT}
+        found = {file_of(name) or file_of(name.rpartition(".")[0]) for name in names}
+        graph[path] = {file for file in found if file is not None} - {path}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        pytest.fail(f"a circle of imports: {' <- '.join(error.args[1])}")
 
 
 def test_the_folders_are_there() -> None:
