@@ -19,21 +19,11 @@ from codegen.errors import UserError
 from codegen.kit.results import read_results
 from codegen.library import load_library
 from codegen.version import VERSION
-from conformance.unit.support.kits import Data, compute, copy, judged, write_kit
+from conformance.unit.kit.small_kit import Data, copy, judged
 
 SEED = 20261122
 DAMAGES = 300
 Capture = pytest.CaptureFixture[str]
-
-
-@pytest.fixture(scope="module")
-def kit(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_kit(tmp_path_factory.mktemp("kit") / "kit")
-
-
-@pytest.fixture(scope="module")
-def computed(kit: Path) -> Data:
-    return compute(kit)
 
 
 def missing_lanes(data: Data) -> None:

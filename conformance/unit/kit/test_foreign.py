@@ -19,7 +19,7 @@ from codegen.cli import run
 from codegen.kernels import kernel_body
 from codegen.library import load_library
 
-FOLDER = Path(__file__).parents[1] / "foreign" / "cpp"
+FOLDER = Path(__file__).parents[2] / "foreign" / "cpp"
 FUNCTIONS = (
     "sin_angle",
     "pcg3d",

@@ -6,7 +6,7 @@ Plan. A small kit of functions of every kind of value is written once; the evalu
   judged    right results pass, in words, in numbers, in npz; wrong ones fail by their verdict: off by many
             ULP, NaN, a function without results, one that did not compile; JSON and JUnit as for our drivers
   folder    other people's files are never replaced
-What cannot be judged: test_kit_results. The foreign runner in C++ computes a kit in test_foreign.
+What cannot be judged: test_results. The foreign runner in C++ computes a kit in test_foreign.
 """
 
 from __future__ import annotations
@@ -26,22 +26,12 @@ from codegen.kit.rows import input_rows, result_rows
 from codegen.library import load_library
 from conformance.check.interval import excess
 from conformance.check.merge import read
-from conformance.unit.support.kits import FUNCTIONS, LANES, Data, compute, copy, judged, load, write_kit
+from conformance.unit.kit.small_kit import FUNCTIONS, LANES, Data, copy, judged, load
 from targets.harness import complete_program
 
 FAR = 4000
 """ULP that a result is moved by: outside every interval and every bound of sin_angle."""
 Capture = pytest.CaptureFixture[str]
-
-
-@pytest.fixture(scope="module")
-def kit(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_kit(tmp_path_factory.mktemp("kit") / "kit")
-
-
-@pytest.fixture(scope="module")
-def computed(kit: Path) -> Data:
-    return compute(kit)
 
 
 def test_both_files_hold_the_same(kit: Path) -> None:
