@@ -125,8 +125,9 @@ class Subject:
 
     def _argument(self, values: Values, path: str, type_: Type) -> Value:
         if path in self.constants:
+            made = self._constant(values, path, type_, self.constants[path])
             values.note("substitute", f"{path} = {_shown(self.constants[path])}", "given as a constant")
-            return self._constant(values, path, type_, self.constants[path])
+            return made
         if path in self.aliases:
             target = self.aliases[path]
             values.note("substitute", f"{path} = {target}", "given as equal")
