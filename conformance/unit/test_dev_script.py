@@ -4,6 +4,7 @@ Plan. The script runs in a copy of its own folder (with a space in its name) and
 only the programs named, so nothing is installed and nothing outside the copy is touched:
   syntax            bash accepts it
   usage             ./dev alone names every command; an unknown command is refused
+  generated         ./dev check-generated looks at every file that the generator writes
   no apt            the missing drivers are listed by what they are for
   no Python         says which version is needed
   a foreign .venv   is never removed
@@ -20,6 +21,8 @@ import time
 from pathlib import Path
 
 import pytest
+
+from codegen.generate import generated_files
 
 ROOT = Path(__file__).parents[2]
 # What the script calls besides Python; all of it is on every system with bash.
@@ -66,6 +69,16 @@ def provide_python(folder: Path) -> None:
 def test_bash_accepts_the_script(name: str) -> None:
     done = subprocess.run(["bash", "-n", str(ROOT / name)], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_every_generated_file_is_checked() -> None:
+    script = (ROOT / "dev").read_text(encoding="utf-8")
+    checked = script.partition("\ngenerated=(")[2].partition(")")[0].split()
+    assert len(checked) > 5
+    missed = [
+        path for path, _ in generated_files() if not any(path.is_relative_to(ROOT / c) for c in checked)
+    ]
+    assert missed == []
 
 
 def test_alone_it_says_what_it_can_do(checkout: Path) -> None:
