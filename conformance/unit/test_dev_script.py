@@ -71,13 +71,14 @@ def test_bash_accepts_the_script(name: str) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_every_generated_file_is_checked() -> None:
+def test_every_generated_file_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("codegen.generate.emit", lambda *_: "")  # only the names are needed, not the texts
+    monkeypatch.setattr("codegen.generate.page", lambda *_: "")
+    monkeypatch.setattr("codegen.generate.with_generated_parts", lambda *_: "")
     script = (ROOT / "dev").read_text(encoding="utf-8")
-    checked = script.partition("\ngenerated=(")[2].partition(")")[0].split()
+    checked = [ROOT / name for name in script.partition("\ngenerated=(")[2].partition(")")[0].split()]
     assert len(checked) > 5
-    missed = [
-        path for path, _ in generated_files() if not any(path.is_relative_to(ROOT / c) for c in checked)
-    ]
+    missed = [path for path, _ in generated_files() if not any(path.is_relative_to(c) for c in checked)]
     assert missed == []
 
 
