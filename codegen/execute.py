@@ -52,12 +52,12 @@ def execute(
     bad inputs and the runtime's BuildFailed where the driver refuses the text.
     """
     library.function(name)
-    _check_precision(runtime, options)
+    check_precision(runtime, options)
     function = called_type(library, name, options)
     arrays, count = convert_inputs(
         {p.name: p.type for p in function.parameters}, inputs, arithmetic("float32"), name
     )
-    arrays = {p.name: _rounded(p.type, arrays[p.name]) for p in function.parameters}
+    arrays = {p.name: rounded_halves(p.type, arrays[p.name]) for p in function.parameters}
     if options.source == "literal":
         out = _execute_literals(library, name, function.returns, arrays, count, runtime, options)
         return unflatten(function.returns, out)
@@ -77,7 +77,7 @@ def on_device(function: Function, arrays: Mapping[str, Value], count: int) -> tu
     return words, [texture_data(t.levels, t.repeat_u, t.repeat_v) for t in maps]
 
 
-def _check_precision(runtime: Runtime, options: KernelOptions) -> None:
+def check_precision(runtime: Runtime, options: KernelOptions) -> None:
     """Raise UserError where a device has no half arithmetic and the target cannot do without."""
     target = runtime.device.target
     needed = options.precision == "half" and dialect(target, options.dialect).half_enable
@@ -106,11 +106,11 @@ def _execute_literals(
     return np.concatenate(parts, axis=1)
 
 
-def _rounded(type_: Type, value: Value) -> Value:
+def rounded_halves(type_: Type, value: Value) -> Value:
     """The value with every f16 in it rounded to half, still as float32."""
     if isinstance(type_, Struct):
         assert isinstance(value, dict)
-        return {f.name: _rounded(f.type, value[f.name]) for f in type_.fields}
+        return {f.name: rounded_halves(f.type, value[f.name]) for f in type_.fields}
     if element_of(type_) != F16:
         return value
     assert isinstance(value, np.ndarray)

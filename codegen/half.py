@@ -147,6 +147,12 @@ def half_hash(library: Library, source_hash: str) -> str:
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 
+def has_half(library: Library, name: str) -> bool:
+    """Whether a function has a half form that is of use."""
+    form = half_forms(library).get(name)
+    return form is not None and not form.refused
+
+
 def check_half(library: Library, names: Iterable[str]) -> None:
     """Raise UserError for the first function that has no half form: why, and what to use instead."""
     forms = half_forms(library)

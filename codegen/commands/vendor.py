@@ -10,13 +10,13 @@ import click
 from rich.console import Console
 
 from codegen.backends import open_runtime
-from codegen.emit.module import DEFAULT_PREFIX
+from codegen.emit.module import DEFAULT_PREFIX, HALF_PREFIX
 from codegen.errors import UserError
 from codegen.files import write_folder
 from codegen.library import Library, load_library
 from codegen.vendor.install import install, read_old_lock
 from codegen.vendor.lock import NAME
-from codegen.vendor.options import SCENE_ALONE, Options, choose_dialects
+from codegen.vendor.options import PRECISIONS, SCENE_ALONE, SCENE_SINGLE, Options, choose_dialects
 from codegen.vendor.plan import Plan, plan_functions
 from codegen.vendor.scene_plan import plan_scene, scene_dialects
 
@@ -29,8 +29,16 @@ NO_DRIVERS = "left out by --no-drivers"
 @click.option("--scene", type=click.Path(path_type=Path), help="The function of a scene file instead.")
 @click.option("--target", "targets", multiple=True, help="glsl, wgsl or opencl; repeatable.")
 @click.option("--dialect", "dialects", multiple=True, help="A dialect by name, or all; repeatable.")
-@click.option("--prefix", help=f"Put before every name.  [default: {DEFAULT_PREFIX}]")
+@click.option(
+    "--prefix",
+    help=f"Put before every name.  [default: {DEFAULT_PREFIX}, {HALF_PREFIX} in half precision]",
+)
 @click.option("--per-function", is_flag=True, help="One file per function instead of one per dialect.")
+@click.option(
+    "--precision",
+    type=click.Choice(PRECISIONS),
+    help="half: as vair emit writes it, for the functions that are of use in it.  [default: single]",
+)
 @click.option("--force", is_flag=True, help="Replace files that were edited or are not Vair's.")
 @click.option("--no-drivers", is_flag=True, help="With --scene: prove by the float32 evaluation only.")
 @click.option(
@@ -47,6 +55,7 @@ def command(
     dialects: tuple[str, ...],
     prefix: str | None,
     per_function: bool,
+    precision: str | None,
     force: bool,
     no_drivers: bool,
     maps: Path | None,
@@ -58,11 +67,13 @@ def command(
     """
     if scene is not None and (functions or per_function):
         raise UserError(SCENE_ALONE)
+    if scene is not None and precision == "half":
+        raise UserError(SCENE_SINGLE)
     if maps is not None and maps.resolve().is_relative_to(folder.resolve()):
         raise UserError(f'"{maps}": maps in "{folder}" would be files that vair verify does not expect')
     library = load_library()
     old = read_old_lock(folder, force=force)
-    given = any((functions, scene, targets, dialects, prefix is not None, per_function))
+    given = any((functions, scene, targets, dialects, prefix is not None, per_function, precision))
     if old is not None and not given:
         options = old.options
     else:
@@ -73,8 +84,9 @@ def command(
             dialects=chosen,
             functions=functions,
             scene=_relative(scene, folder) if scene is not None else "",
-            prefix=DEFAULT_PREFIX if prefix is None else prefix,
+            prefix=prefix if prefix is not None else HALF_PREFIX if precision == "half" else DEFAULT_PREFIX,
             per_function=per_function,
+            precision=precision or "single",
         )
     plan = planned(library, options, folder, drivers=not no_drivers)
     changed = install(folder, plan, force=force)

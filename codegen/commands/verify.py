@@ -17,6 +17,7 @@ from rich.console import Console
 from codegen.commands.vendor import NO_DRIVERS, planned, runtime
 from codegen.errors import UserError
 from codegen.files import write_text
+from codegen.half import half_forms, has_half
 from codegen.library import Library, load_library
 from codegen.scene.proof.points import SEED, draw
 from codegen.vendor.changes import changes
@@ -69,7 +70,12 @@ def command(folder: Path, json_file: Path | None, no_drivers: bool) -> int:
 
 def _known(lock: Lock, library: Library) -> Lock:
     """The lock without functions that this version has no more: these are reported as removed."""
-    known = tuple(name for name in lock.options.functions if library.resolver.defines(name))
+    half = lock.options.half
+    known = tuple(
+        name
+        for name in lock.options.functions
+        if library.resolver.defines(name) and (not half or has_half(library, name))
+    )
     if lock.options.functions and not known:
         raise UserError("none of the vendored functions is one of this version")
     return replace(lock, options=replace(lock.options, functions=known))
@@ -98,6 +104,11 @@ def _execution(plan: Plan, drivers: bool, say: Callable[[str], None]) -> Executi
             return {p.name: drawn.inputs[p.name] for p in function(name).parameters}
         if function(name).reads_textures:
             return "reads maps, for which no inputs are drawn; its code changed"
+        if plan.lock.options.half:
+            form = half_forms(plan.library)[name]
+            survey: Any = importlib.import_module("conformance.half.survey")
+            sample = survey.half_sample(plan.library, function(name), form.single, form.where)
+            return {key: _first(value) for key, value in sample.inputs.items()}
         families = {family: HARD_POINTS for family in cases.families_for(function(name).parameters)}
         parts = [
             cases.draw(function(name), f, n) for f, n in {cases.UNIFORM: UNIFORM_POINTS, **families}.items()
@@ -111,12 +122,20 @@ def _execution(plan: Plan, drivers: bool, say: Callable[[str], None]) -> Executi
     return Execution(
         library=plan.library,
         prefix=plan.lock.options.prefix,
+        precision="half" if plan.lock.options.half else "single",
         runtimes=cache(runtime if drivers else lambda target: NO_DRIVERS),
         draw=points,
         told=told,
         refusal=targets.BuildFailed,
         say=say,
     )
+
+
+def _first(value: Any) -> Any:
+    """As many points as are drawn at random otherwise."""
+    if isinstance(value, dict):
+        return {key: _first(part) for key, part in value.items()}
+    return value[:UNIFORM_POINTS]
 
 
 def _joined(parts: list[Any]) -> Any:

@@ -12,10 +12,12 @@ import hashlib
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from codegen.emit.dialect import Dialect
 
 DIGITS = 8
+_WORD = re.compile(r"\w+")
 _NAME = re.compile(r"\bstruct\s+(\w+)|(\w+)\s*\(")
 
 
@@ -26,6 +28,7 @@ class Definition:
     name     as it is emitted, with its prefix
     comment  lines above it
     code     lines of the definition
+    source   the function of the library that it is a form of; empty for structs and lookups
     path     the source file that it says; empty where none is known
     lines    the line of that file which each line of code says; 0 where none is known
     paths    the source file of each line, where a function was made of several; else empty
@@ -37,12 +40,30 @@ class Definition:
     path: str = field(default="", compare=False)
     lines: tuple[int, ...] = field(default=(), compare=False)
     paths: tuple[str, ...] = field(default=(), compare=False)
+    source: str = field(default="", compare=False)
+
+    @cached_property
+    def words(self) -> frozenset[str]:
+        """The words of its code, comments left out."""
+        return frozenset(word for line in self.code for word in _WORD.findall(line.partition("//")[0]))
 
     @property
     def guard(self) -> str:
         """The macro of its guard; the same for the same code, whatever the comment says."""
         digest = hashlib.sha256("\n".join(self.code).encode()).hexdigest()[:DIGITS]
         return f"{self.name}_{digest}".upper()
+
+
+def reached(name: str, definitions: Iterable[Definition]) -> list[Definition]:
+    """A definition and all that its code needs, in their order; empty where it is not among them."""
+    listed = list(definitions)
+    by_name = {d.name: d for d in listed}
+    needed, pending = {name}, [name] if name in by_name else []
+    while pending:
+        found = by_name[pending.pop()].words & by_name.keys() - needed
+        needed |= found
+        pending += found
+    return [d for d in listed if d.name in needed]
 
 
 def plain(definitions: Iterable[Definition]) -> list[str]:
@@ -73,7 +94,9 @@ def read_definitions(text: str) -> list[Definition]:
     comment: list[str] = []
     code: list[str] = []
     for line in text.splitlines():
-        if code or (line.strip() and not line.startswith(("//", "#"))):
+        if not code and line.endswith(";"):  # a directive such as enable f16;
+            comment = []
+        elif code or (line.strip() and not line.startswith(("//", "#"))):
             code.append(line)
             name = _NAME.search(code[0])
             if line.startswith("}") and name is not None:

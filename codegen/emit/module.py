@@ -58,20 +58,29 @@ def include(
     """
     prefix = default_prefix(dialect) if prefix is None else prefix
     check_prefix(prefix)
-    if dialect.arithmetic == "half":
-        usable = [name for name, form in half_forms(library).items() if not form.refused]
-        check_half(library, usable if names is None else names)
-        selection = library.select(usable if names is None else names)
-    else:
-        selection = library.select(names)
+    selection = chosen(library, dialect, names)
     defined = definitions(library, dialect, selection, prefix)
-    source_hash = selection.source_hash
-    if dialect.arithmetic == "half":
-        source_hash = half_hash(library, source_hash)
-    head = emitted_header(dialect, source_hash, names, prefix, further)
-    if dialect.arithmetic == "half" and dialect.half_enable:
-        head += ["", dialect.half_enable]
-    return head, defined
+    return emitted_header(dialect, source_hash(library, dialect, selection), names, prefix, further), defined
+
+
+def chosen(library: Library, dialect: Dialect, names: Sequence[str] | None) -> Selection:
+    """The functions of these names; where None, all public ones, or all that have a half form.
+
+    raises  UserError for an unknown function, and one that is of no use in half precision where that is asked
+    """
+    if dialect.arithmetic != "half":
+        return library.select(names)
+    asked = names
+    if asked is None:
+        asked = [name for name, form in half_forms(library).items() if not form.refused]
+    check_half(library, asked)
+    return library.select(asked)
+
+
+def source_hash(library: Library, dialect: Dialect, selection: Selection) -> str:
+    """The hash of all that the text of a selection is made of."""
+    found = selection.source_hash
+    return half_hash(library, found) if dialect.arithmetic == "half" else found
 
 
 def emit_selection(library: Library, dialect: Dialect, selection: Selection, prefix: str) -> list[str]:
@@ -106,7 +115,8 @@ def definitions(library: Library, dialect: Dialect, selection: Selection, prefix
         places = [f.source_of(line) for line in lines] if f.origins else []
         numbers = tuple(place.line for place in places) or lines
         paths = tuple(place.path for place in places)
-        found.append(Definition(f.name, tuple(words), texts, f.place.path, numbers, paths))
+        source = version.source.name
+        found.append(Definition(f.name, tuple(words), texts, f.place.path, numbers, paths, source))
     return found
 
 
@@ -149,7 +159,7 @@ HALF_NOTE = (
 
 
 def emitted_header(
-    dialect: Dialect, source_hash: str, names: Sequence[str] | None, prefix: str, further: str = ""
+    dialect: Dialect, hashed: str, names: Sequence[str] | None, prefix: str, further: str = ""
 ) -> list[str]:
     """The header of what `emit` gives."""
     command = f"vair emit --target {dialect.target} --dialect {dialect.name}"
@@ -161,6 +171,16 @@ def emitted_header(
         command += f" --prefix {prefix}"
     command += further + "".join(f" --function {name}" for name in names or ())
     return [
-        *header(dialect, command, f"Source hash {source_hash}", CONVENTIONS),
-        *(wrap.comment(HALF_NOTE, "// ", "// ") if dialect.arithmetic == "half" else ()),
+        *header(dialect, command, f"Source hash {hashed}", CONVENTIONS),
+        *half_lines(dialect),
+    ]
+
+
+def half_lines(dialect: Dialect) -> list[str]:
+    """What a header says of half precision, and what enables it; nothing in single precision."""
+    if dialect.arithmetic != "half":
+        return []
+    return [
+        *wrap.comment(HALF_NOTE, "// ", "// "),
+        *(["", dialect.half_enable] if dialect.half_enable else []),
     ]

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from codegen.emit.definition import Definition, read_definitions
+from codegen.emit.definition import Definition, reached, read_definitions
 from codegen.vendor.lock import Lock, Promise
 
 _WORD = re.compile(r"\w+")
@@ -123,16 +123,7 @@ def _change(
 
 def closure(name: str, definitions: Mapping[str, Definition]) -> Code:
     """A definition and all that it needs, without comments, in the order of the text; empty for no such."""
-    if name not in definitions:
-        return ()
-    needed, pending = {name}, [name]
-    while pending:
-        for line in definitions[pending.pop()].code:
-            for word in _WORD.findall(line.partition("//")[0]):
-                if word in definitions and word not in needed:
-                    needed.add(word)
-                    pending.append(word)
-    return tuple(d.code for d in definitions.values() if d.name in needed)
+    return tuple(d.code for d in reached(name, definitions.values()))
 
 
 def _by_name(texts: Sequence[str]) -> dict[str, Definition]:

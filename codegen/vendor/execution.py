@@ -5,22 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from codegen.backends import complete_program
-from codegen.emit.module import DEFAULT_PREFIX
+from codegen.backends import complete_program, dialect
+from codegen.emit.module import DEFAULT_PREFIX, HALF_PREFIX
+from codegen.errors import UserError
 from codegen.evaluate.arrays import Value, arithmetic, convert_inputs
-from codegen.execute import on_device, unflatten
+from codegen.execute import check_precision, on_device, rounded_halves, unflatten
 from codegen.ir.types import leaves
-from codegen.kernels import kernel_body
+from codegen.kernels import KernelOptions, called_type, kernel_body
 from codegen.library import Library
 from codegen.vendor.changes import FLOOR, Code, Difference
 
 Inputs = Mapping[str, Any]
-_OWN_NAME = re.compile(rf"\b{DEFAULT_PREFIX}(?=\w)")
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,7 @@ class Execution:
 
     library   of the new texts; it knows the function's types
     prefix    of both texts
+    precision  single or half, of both
     runtimes  target -> runtime, or a sentence why there is none
     draw      function name -> inputs by parameter, or a sentence why there are none
     told      function name, inputs, lane -> the inputs in words
@@ -43,13 +44,18 @@ class Execution:
     told: Callable[[str, Inputs, int], str]
     refusal: type[Exception]
     say: Callable[[str], None] = lambda sentence: None
+    precision: Literal["single", "half"] = "single"
 
-    def compare(self, name: str, dialect: str, old: Code, new: Code) -> Difference | str:
+    def compare(self, name: str, where: str, old: Code, new: Code) -> Difference | str:
         """The difference over the drawn points, or a sentence why nothing was executed."""
-        target = dialect.partition("/")[0]
+        target = where.partition("/")[0]
         runtime = self.runtimes(target)
         if isinstance(runtime, str):
             return runtime
+        try:
+            check_precision(runtime, self.options)
+        except UserError as e:
+            return str(e)
         inputs = self.draw(name)
         if isinstance(inputs, str):
             return inputs
@@ -63,15 +69,23 @@ class Execution:
         device = runtime.device
         return self._difference(name, f"{device.device}; {device.driver}", inputs, before, after)
 
+    @property
+    def options(self) -> KernelOptions:
+        """How texts are called."""
+        return KernelOptions(precision=self.precision)
+
     def _run(
         self, name: str, target: str, code: Code, inputs: Inputs, runtime: Any
     ) -> npt.NDArray[np.float64] | str:
         """Results as numbers, one row per scalar; a sentence where the driver refuses the text."""
-        function = self.library.function(name)
-        body = _OWN_NAME.sub(self.prefix, kernel_body(self.library, name, target))
-        text = "\n\n".join("\n".join(lines) for lines in code) + "\n"
+        function = called_type(self.library, name, self.options)
+        own = HALF_PREFIX if self.precision == "half" else DEFAULT_PREFIX
+        body = re.sub(rf"\b{own}(?=\w)", self.prefix, kernel_body(self.library, name, target, self.options))
+        enable = [dialect(target).half_enable] if self.precision == "half" else []
+        text = "\n\n".join([*enable, *("\n".join(lines) for lines in code)]) + "\n"
         types = {p.name: p.type for p in function.parameters}
         arrays, count = convert_inputs(types, inputs, arithmetic("float32"), name)
+        arrays = {p.name: rounded_halves(p.type, arrays[p.name]) for p in function.parameters}
         words, maps = on_device(function, arrays, count)
         further = {"textures": maps} if maps else {}
         try:

@@ -74,6 +74,7 @@ def lock_text(lock: Lock) -> str:
     o = lock.options
     options = tomlkit.table()
     options.update({"dialects": list(o.dialects), "prefix": o.prefix, "per_function": o.per_function})
+    options.update({"precision": o.precision} if o.half else {})
     options.update({"scene": o.scene} if o.scene else {"functions": list(o.functions)})
     document["options"] = options
     document["files"] = dict(sorted(lock.files.items()))
@@ -158,6 +159,7 @@ class _Reader:
                 scene=self.value(table, "scene", str, ""),
                 prefix=self.value(table, "prefix", str),
                 per_function=self.value(table, "per_function", bool, False),
+                precision=self.value(table, "precision", str, "single"),
             )
             options.found_dialects()
         except UserError as e:

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from codegen.backends import TARGETS, dialect, dialects_of
-from codegen.emit.dialect import Dialect
+from codegen.emit.dialect import Dialect, with_half
 from codegen.emit.module import DEFAULT_PREFIX
 from codegen.errors import UserError, unknown
 from codegen.names import check_prefix
 
 ALL = "all"
+PRECISIONS = ("single", "half")
+SCENE_SINGLE = "a scene is proven in single precision; leave out --precision half"
 SCENE_ALONE = "a scene has one function of its own; leave out --function and --per-function"
 
 
@@ -24,6 +26,7 @@ class Options:
     scene         a scene file, relative to the folder; empty for none
     prefix        before every name
     per_function  one file per function and dialect instead of one per dialect
+    precision     "half": the half forms of the functions that have one
     """
 
     dialects: tuple[str, ...]
@@ -31,18 +34,28 @@ class Options:
     scene: str = ""
     prefix: str = DEFAULT_PREFIX
     per_function: bool = False
+    precision: str = "single"
 
     def __post_init__(self) -> None:
         check_prefix(self.prefix)
         if self.scene and (self.functions or self.per_function):
             raise UserError(SCENE_ALONE)
+        if self.precision not in PRECISIONS:
+            raise unknown("precision", self.precision, PRECISIONS)
+        if self.scene and self.half:
+            raise UserError(SCENE_SINGLE)
+
+    @property
+    def half(self) -> bool:
+        """Whether half forms are asked for."""
+        return self.precision == "half"
 
     def found_dialects(self) -> list[Dialect]:
         """The dialects; raises UserError for one that there is not."""
         found = []
         for name in self.dialects:
             target, _, own = name.partition("/")
-            found.append(dialect(target, own))
+            found.append(with_half(dialect(target, own)) if self.half else dialect(target, own))
         return found
 
 

@@ -6,23 +6,33 @@ import functools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from codegen.bounds import Bound
 from codegen.describe import signature
 from codegen.emit import wrap
-from codegen.emit.definition import Definition
+from codegen.emit.definition import Definition, reached
 from codegen.emit.dialect import Dialect, file_name
 from codegen.emit.frame import file_text, header
-from codegen.emit.module import CONVENTIONS, DEFAULT_PREFIX, definitions, emitted_header
+from codegen.emit.module import (
+    CONVENTIONS,
+    HALF_NOTE,
+    chosen,
+    default_prefix,
+    definitions,
+    emitted_header,
+    source_hash,
+)
 from codegen.errors import UserError
 from codegen.guarantees import table_of
-from codegen.ir.nodes import Function, StructDef
-from codegen.ir.types import TEXTURE
+from codegen.half import half_forms, half_hash, half_rules
+from codegen.ir.nodes import StructDef
 from codegen.library import Library, Selection
 from codegen.lines.linemap import as_json, map_of
+from codegen.passes.half import half_structs, half_versions
 from codegen.vendor.lock import NAME, Lock, Promise, file_hash, lock_text
 from codegen.vendor.options import Options, key
 from codegen.version import VERSION
 
-STEM = "vair"
+STEM, HALF_STEM = "vair", "vair-half"
 
 
 @dataclass(frozen=True)
@@ -53,11 +63,15 @@ class Plan:
 
 def plan_functions(library: Library, options: Options) -> Plan:
     """The files for chosen functions; raises UserError for unknown functions and prefixes that collide."""
-    selection = library.select(options.functions or None)
+    dialects = options.found_dialects()
+    if not dialects:
+        raise UserError("there is no dialect to write")
+    selection = chosen(library, dialects[0], options.functions or None)
+    stem = HALF_STEM if options.half else STEM
     files: dict[str, str] = {}
     parts: dict[str, tuple[Dialect, Sequence[Definition]]] = {}
     printed: list[tuple[Dialect, list[Definition]]] = []
-    for d in options.found_dialects():
+    for d in dialects:
         alike = [found for other, found in printed if _prints_alike(other, d)]
         found = alike[0] if alike else definitions(library, d, selection, options.prefix)
         printed += [] if alike else [(d, found)]
@@ -65,21 +79,24 @@ def plan_functions(library: Library, options: Options) -> Plan:
             for name, text, own in _single_files(library, options, d, selection, found):
                 files[name], parts[name] = text, (d, own)
         else:
-            head = emitted_header(d, selection.source_hash, options.functions or None, options.prefix)
-            name = file_name(d, STEM)
+            hashed = source_hash(library, d, selection)
+            head = emitted_header(d, hashed, options.functions or None, options.prefix)
+            name = file_name(d, stem)
             files[name], parts[name] = file_text(d, head, found), (d, found)
     return Plan(locked(library, options, selection, files), files, library, parts)
 
 
 def locked(library: Library, options: Options, selection: Selection, files: Mapping[str, str]) -> Lock:
     """The lock for the files of a selection."""
+    half = half_hash(library, selection.source_hash) if options.half else selection.source_hash
+    structs = half_structs(selection.structs) if options.half else selection.structs
     return Lock(
         version=VERSION,
-        source_hash=selection.source_hash,
+        source_hash=half,
         options=options,
         files={name: file_hash(text.encode("utf-8")) for name, text in files.items()},
-        functions={name: promise(library, library.function(name)) for name in selection.names},
-        structs={s.name: fields(s) for s in selection.structs},
+        functions={name: promise(library, name, half=options.half) for name in selection.names},
+        structs={s.name: fields(s) for s in structs},
     )
 
 
@@ -96,10 +113,16 @@ def folder_name(d: Dialect) -> str:
     return d.target if d.name == d.target else f"{d.target}-{d.name}"
 
 
-def promise(library: Library, f: Function) -> Promise:
-    """What a lock says of a function."""
-    errors = tuple(b.describe() for b in library.bounds_of(f.name))
-    return Promise(signature(f), errors, f.doc.entries.get("source", ""))
+def promise(library: Library, name: str, *, half: bool = False) -> Promise:
+    """What a lock says of a function, or of its half form."""
+    f = library.function(name)
+    bounds = half_forms(library)[name].bounds if half else library.bounds_of(name)
+    called = half_versions(library, [name], half_rules(library))[-1].function if half else f
+    return Promise(
+        signature(replace(called, name=name)),
+        tuple(map(Bound.describe, bounds)),
+        f.doc.entries.get("source", ""),
+    )
 
 
 def fields(s: StructDef) -> str:
@@ -121,42 +144,41 @@ def _single_files(
 ) -> Iterator[tuple[str, str, Sequence[Definition]]]:
     """Name, text and definitions of one file per function.
 
-    Where there is no preprocessor, also of one for each struct that they need. Behind guards a file holds all it needs, so that any of them do in any order. Without, a file holds its
-    own definition and names the files that must come with it.
+    Where there is no preprocessor, also of one for all that they need. Behind guards a file holds all it
+    needs, so that any of them do in any order. Without, a file holds its own definition and names the files
+    that must come with it.
     """
     folder = folder_name(d)
-    by_name = {definition.name: definition for definition in found}
-    names = selection.names if d.guard else [f.name for f in selection.functions]
-    for name in names:
-        own = library.select([name])
-        head = emitted_header(d, own.source_hash, [name], options.prefix)
-        needed = [by_name[n] for n in _needed(own, options.prefix, by_name)]
-        if not d.guard:
-            needed, others = needed[-1:], needed[:-1]
-            files = [n.name.removeprefix(options.prefix) + f".{d.extension}" for n in others]
-            head = _part_header(d, own.source_hash, options.prefix, files)
-        yield f"{folder}/{name}.{d.extension}", file_text(d, head, needed), needed
-    if not d.guard:
-        for s in selection.structs:
-            inner = [f.type.name for f in s.type.fields if options.prefix + f.type.name in by_name]
-            files = [f"{name}.{d.extension}" for name in inner]
-            head = _part_header(d, selection.source_hash, options.prefix, files)
-            alone = [by_name[options.prefix + s.name]]
-            yield f"{folder}/{s.name}.{d.extension}", file_text(d, head, alone), alone
+    if d.guard:
+        for name in selection.names:
+            own = library.select([name])
+            head = emitted_header(d, source_hash(library, d, own), [name], options.prefix)
+            needed = reached(options.prefix + name, found)
+            yield f"{folder}/{name}.{d.extension}", file_text(d, head, needed), needed
+        return
+    for part in found:
+        own = library.select([part.source]) if part.source else selection
+        others = [_file(options, d, other) for other in reached(part.name, found) if other is not part]
+        head = _part_header(d, source_hash(library, d, own), options, others)
+        yield f"{folder}/{_file(options, d, part)}", file_text(d, head, [part]), [part]
 
 
-def _needed(own: Selection, prefix: str, by_name: Mapping[str, Definition]) -> list[str]:
-    """Names of the definitions of one function's file, dependencies first."""
-    looks_up = any(p.type == TEXTURE for f in own.functions for p in f.parameters)
-    lookups = [n for n in by_name if n.startswith(f"{prefix}lookup_")] if looks_up else []
-    return [*lookups, *(prefix + s.name for s in own.structs), *(prefix + f.name for f in own.functions)]
+def _file(options: Options, d: Dialect, part: Definition) -> str:
+    return f"{part.name.removeprefix(options.prefix)}.{d.extension}"
 
 
-def _part_header(d: Dialect, source_hash: str, prefix: str, files: Sequence[str]) -> list[str]:
+def _part_header(d: Dialect, hashed: str, options: Options, files: Sequence[str]) -> list[str]:
     """The header of a file that holds one definition, and names the files that must come with it."""
-    named = "" if prefix == DEFAULT_PREFIX else f" --prefix {prefix}"
-    command = f"vair vendor --dialect {d.name} --per-function{named}"
-    head = header(d, command, f"Source hash {source_hash}", CONVENTIONS)
+    named = "" if options.prefix == default_prefix(d) else f" --prefix {options.prefix}"
+    half = " --precision half" if options.half else ""
+    command = f"vair vendor --dialect {d.name} --per-function{half}{named}"
+    head = header(d, command, f"Source hash {hashed}", CONVENTIONS)
+    if options.half:
+        # What enables halves stands once, before everything else, where there are no guards.
+        head += [
+            *wrap.comment(HALF_NOTE, "// ", "// "),
+            f'// Needs "{d.half_enable}" at the head of the module.',
+        ]
     if files:
         head += ["//", *wrap.comment(f"Needs, in any order: {', '.join(files)}", "// ", "//   ")]
     return head
