@@ -35,7 +35,7 @@ SOURCES = [
 ]
 WRITTEN = {"report.md"}
 """What commands write."""
-TESTS_LINKS = "conformance/unit/test_pages.py"
+TESTS_LINKS = "conformance/unit/report/test_documentation.py"
 UNNAMED = {"README.md", "__init__.py", "__main__.py"}
 PATH = re.compile(r"(?<![\w./\"-])(?:shaderlib|codegen|targets|conformance|examples)/[\w./*-]+")
 MODULE = re.compile(r"python3? -m ((?:codegen|conformance|targets|examples)(?:\.\w+)*)")

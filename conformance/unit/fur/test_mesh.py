@@ -24,7 +24,7 @@ from codegen.fur.edges import find_edges
 from codegen.fur.surface import Surface, face_normals, read_surface, subdivided
 from conformance.picture.tolerances import tolerance
 
-BUNNY = Path(__file__).parents[2] / "examples" / "data" / "bunny.obj"
+BUNNY = Path(__file__).parents[3] / "examples" / "data" / "bunny.obj"
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
 THREE_AT_AN_EDGE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n"
 

@@ -7,7 +7,7 @@ Plan.
   section   the best estimator of a row stands out, times lie on lines, figures join the promised ones
   command   options that do not go together are refused
 Not covered here: the estimators themselves (test_light.py), measuring on drivers, the page in a browser
-(test_report_page.py).
+(test_page.py).
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ Plan. No test asserts a speed.
               and lead to no number below the normal ones, which would take a hundred times as long
   records     rounding, names of files, the README's table and the cost of `vair list`, from a small result
   choice      errors over the base's whole domain know of narrower members and of declared bounds
-Not covered here: when rounds stop (test_bench_stopping.py), the report and its command (test_report.py).
+Not covered here: when rounds stop (test_stopping.py), the report and its command (../report/test_report.py).
 """
 
 from __future__ import annotations

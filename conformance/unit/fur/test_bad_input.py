@@ -20,7 +20,7 @@ import trimesh
 
 from codegen.cli import run
 
-FURRY = (Path(__file__).parents[2] / "examples" / "scenes" / "furry-bunny.toml").read_text(encoding="utf-8")
+FURRY = (Path(__file__).parents[3] / "examples" / "scenes" / "furry-bunny.toml").read_text(encoding="utf-8")
 NOISE = np.random.default_rng(3).integers(0, 256, 1000).astype(np.uint8).tobytes()
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 FLAT = """ply

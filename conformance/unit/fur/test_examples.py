@@ -14,7 +14,7 @@ from codegen.cli import run
 from conformance.picture.tolerances import tolerance
 from conformance.unit.support.drivers import need
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 PROGRAMS = {"opengl": "glsl", "webgpu": "wgsl"}
 
 

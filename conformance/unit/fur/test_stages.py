@@ -34,7 +34,7 @@ from targets.packages import find_tool
 from targets.protocol import TargetUnavailable
 from targets.wgsl import validate as wgsl
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 SCENE = ROOT / "examples" / "scenes" / "furry-bunny.toml"
 MODELS = ("fakefur_shade_slab", "shell_shade_printed", "scheuermann_shade")
 LIBRARY = load_library()

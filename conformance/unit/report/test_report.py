@@ -10,7 +10,7 @@ Plan.
   writing       all files or none; records of an earlier report go
   scenes        what vair scene wrote becomes a table
   command       bad functions, targets, drivers, folders and combinations are refused with one sentence
-Not covered here: what the page does in a browser (test_report_page.py), measuring (test_bench.py).
+Not covered here: what the page does in a browser (test_page.py), measuring (../bench/test_bench.py).
 """
 
 from __future__ import annotations
