@@ -3,15 +3,22 @@
 Plan.
   forms      every form of the two powers has a row, and is multiplied out when asked
   stays      exponents that are no whole numbers or above what was asked
+  products   as many as are told, and of as many numbers: every exponent in exact numbers
+  ends       bases end where powers stay normal numbers, and where powers saturate; a power of 1 is its base
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
+from codegen.ir import nodes as ir
+from codegen.ir.types import F32
 from codegen.library import load_library
-from codegen.passes.rules.powers import NAME, ROWS, multiplications
+from codegen.passes.rules.powers import NAME, ROWS, largest_base, least_base, multiplications, power_of
 from codegen.passes.specialise import specialise
+from codegen.passes.ssa.values import Values
 
 LIBRARY = load_library()
 BASES = ("pow_one_minus", "safe_pow")
@@ -40,3 +47,31 @@ def test_whole_power_is_multiplied_out(name: str) -> None:
 @pytest.mark.parametrize("exponent", [8.5, MOST + 1.0])
 def test_other_powers_stay(exponent: float) -> None:
     assert all(steps(name, exponent) == [] for name in ROWS)
+
+
+def exponent_of(e: ir.Expr, products: set[int]) -> int:
+    """The exponent that products of one variable come to."""
+    if isinstance(e, ir.Var):
+        return 1
+    assert isinstance(e, ir.Binary) and e.op == "*"
+    products.add(id(e))
+    return exponent_of(e.left, products) + exponent_of(e.right, products)
+
+
+@pytest.mark.parametrize("power", [*range(1, 40), 63, 64, 65, 100, 255, 1000, 1024])
+def test_products_of_squares_are_the_power(power: int) -> None:
+    values = Values()
+    products: set[int] = set()
+    made = power_of(values, values.intern(ir.Var(F32, "x")), power)
+    assert exponent_of(made, products) == power
+    assert len(products) == multiplications(power)
+
+
+def test_bases_end_where_powers_stay_normal_and_finite() -> None:
+    assert least_base(1) == 0.0
+    for power in range(1, 1025):
+        if power > 1:
+            least = Fraction(least_base(power)) ** power
+            assert Fraction(2) ** -101 < least < Fraction(2) ** -99
+        largest = Fraction(largest_base(power)) ** power
+        assert 5.5e34 < largest < 5.6e34
