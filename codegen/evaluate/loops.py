@@ -54,14 +54,7 @@ def together(s: ir.For) -> Together | None:
     lets: list[ir.Let] = []
     ends: list[ir.Assign] = []
     elements: dict[str, str] = {}
-
-    def element(e: ir.Expr) -> ir.Expr:
-        """An element of an array around the loop, by a name of its own where the iteration names it."""
-        match e:
-            case ir.Index(value=ir.Var(name=array), index=ir.Var(name=s.name)) if array not in own | assigned:
-                elements[f"{array}[{s.name}]"] = array
-                return ir.Var(e.type, f"{array}[{s.name}]")
-        return e
+    inside = frozenset(own | assigned)
 
     def part(e: ir.Expr) -> ir.Expr:
         """The expression over parts that no iteration before tells."""
@@ -74,7 +67,8 @@ def together(s: ir.For) -> Together | None:
         return ir.rebuild(e, tuple(map(part, ir.children(e))))
 
     for x in body:
-        value = ir.map_expr(x.value, element)
+        value, named = _over_elements(x.value, s.name, inside)
+        elements |= named
         if isinstance(x, ir.Let):
             if not assigned.isdisjoint(_names(value)):
                 return None
@@ -92,8 +86,29 @@ def together(s: ir.For) -> Together | None:
     )
 
 
-def _names(e: ir.Expr) -> set[str]:
-    return {x.name for x in ir.walk(e) if isinstance(x, ir.Var)}
+@functools.lru_cache(4096)
+def _over_elements(e: ir.Expr, index: str, inside: frozenset[str]) -> tuple[ir.Expr, dict[str, str]]:
+    """An expression with elements of arrays around the loop, where the iteration names them, by names of
+    their own; and those names with their arrays. Loops that share statements share what becomes of them.
+
+    inside  names that the loop gives values to
+    """
+    elements: dict[str, str] = {}
+
+    def element(x: ir.Expr) -> ir.Expr:
+        match x:
+            case ir.Index(value=ir.Var(name=array), index=ir.Var(name=number)):
+                if number == index and array not in inside:
+                    elements[f"{array}[{index}]"] = array
+                    return ir.Var(x.type, f"{array}[{index}]")
+        return x
+
+    return ir.map_expr(e, element), elements
+
+
+@functools.lru_cache(4096)
+def _names(e: ir.Expr) -> frozenset[str]:
+    return frozenset(x.name for x in ir.walk(e) if isinstance(x, ir.Var))
 
 
 def joined(values: list[Value]) -> Value:

@@ -81,9 +81,9 @@ class Inliner:
             rest = body[position + 1 :]
             match s:
                 case ir.Let() | ir.Assign():
-                    scope[s.name] = self.named(self.expr(s.value, scope), s.name)
+                    scope[s.name] = self.named(self.whole(s.value, scope), s.name)
                 case ir.Return():
-                    return self.expr(s.value, scope)
+                    return self.whole(s.value, scope)
                 case ir.If():
                     if _returns(s):
                         return self.branch(s, scope, rest)
@@ -232,6 +232,10 @@ class Inliner:
         value = self.expr(e, scope)
         assert not isinstance(value, dict)
         return value
+
+    def whole(self, e: ir.Expr, scope: Scope) -> Value:
+        """The value of a statement's expression."""
+        return self.expr(e, scope)
 
     def expr(self, e: ir.Expr, scope: Scope) -> Value:
         """The value of an expression."""

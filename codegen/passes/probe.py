@@ -6,19 +6,19 @@ All questions share their values, so that what does not depend on what is asked 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from codegen.ir import nodes as ir
 from codegen.library import Library
 from codegen.passes.analysis.operations import operations
 from codegen.passes.analysis.ranges import Ranges
-from codegen.passes.inline import Inliner
+from codegen.passes.inline import Inliner, Scope
 from codegen.passes.placement.dead import pruned, used_parameters
 from codegen.passes.placement.schedule import statements
 from codegen.passes.specialise import EXACT_KINDS, exact_rules, parameter_names, specialise
 from codegen.passes.ssa.flow import roots
-from codegen.passes.ssa.values import Values, leaves
+from codegen.passes.ssa.values import Value, Values, leaves
 from codegen.passes.subject import Subject
 
 
@@ -30,15 +30,37 @@ def operations_left(
     return [shared.operations(constants) for constants in ({}, *questions)][1:]
 
 
+@dataclass
+class _Recalling(Inliner):
+    """Follows a function without structs again: a statement over the same values has the same value.
+
+    known  a statement's expression and the values of its variables, by their ids -> its value
+    names  of the variables of an expression, by its id
+    """
+
+    known: dict[tuple[int, ...], Value] = field(default_factory=dict)
+    names: dict[int, list[str]] = field(default_factory=dict)
+
+    def whole(self, e: ir.Expr, scope: Scope) -> Value:
+        if id(e) not in self.names:
+            self.names[id(e)] = list(dict.fromkeys(x.name for x in ir.walk(e) if isinstance(x, ir.Var)))
+        key = (id(e), *[id(scope[name]) for name in self.names[id(e)]])
+        if key not in self.known:
+            self.known[key] = self.expr(e, scope)
+        return self.known[key]
+
+
 class _Shared:
     def __init__(self, library: Library, function: ir.Function, unroll: int) -> None:
         self.library, self.function, self.unroll = library, function, unroll
         self.values = self.fresh()
+        self.names: dict[int, list[str]] = {}
 
     def fresh(self) -> Values:
         """Values of which nothing is known yet."""
         values = Values(function=self.function.name, line=self.function.place.line)
         values.simplify_by(exact_rules(Ranges(values), frozenset(EXACT_KINDS)))
+        self.known: dict[tuple[int, ...], Value] = {}
         return values
 
     def operations(self, constants: Mapping[str, Any]) -> int:
@@ -46,7 +68,8 @@ class _Shared:
         values, function = self.values, self.function
         before = dict(values.indices)
         arguments = Subject(function, dict(constants), {}, {}).arguments(values)
-        flow = pruned(Inliner(self.library, values, (), self.unroll).flow(function, arguments))
+        inliner = _Recalling(self.library, values, (), self.unroll, known=self.known, names=self.names)
+        flow = pruned(inliner.flow(function, arguments))
         if any(values.indices[index] != ends for index, ends in before.items()):
             # A loop has the variable of another: what is known of that one does not hold for it.
             self.values = self.fresh()

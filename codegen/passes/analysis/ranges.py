@@ -15,13 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from codegen.errors import UserError
+from codegen.intervals import TABLES
 from codegen.intervals.numbers import LARGEST, SMALLEST
 from codegen.intervals.values import Range, Single, Truth, Whole, constant
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Edges, Finite, Interval, Length, Unit
 from codegen.ir.types import BOOL, F32, I32, Array, Scalar, Struct, Type, Vector
 from codegen.passes.analysis.norms import UNIT_SLACK, Lengths
-from codegen.passes.analysis.transfer import Bound, Transfer, remembered, transfers
+from codegen.passes.analysis.transfer import Bound, remembered, signatures, transfers
 from codegen.passes.ssa.values import Values, any_element
 
 FACT_SLACK = 2.0**-19
@@ -50,7 +51,7 @@ class Ranges:
     def __init__(self, values: Values) -> None:
         self.values = values
         self.facts: dict[int, tuple[float, float]] = {}
-        self._under: list[tuple[Transfer, dict[int, Bound]]] = [(t, {}) for t in transfers()]
+        self._under: dict[int, tuple[Bound, ...]] = {}
         self._kept: list[ir.Expr] = []
         self._lengths = Lengths(values, self.bounds)
         self._known: dict[int, tuple[Bounds, ...]] = {}
@@ -70,26 +71,30 @@ class Ranges:
         """The bounds of each component. Raises UserError where a fact contradicts what ranges give."""
         if id(e) not in self._known:
             with np.errstate(all="ignore"):
-                for part in _pending(e, self._under[0][1]):  # operands first, without deep recursion
-                    if id(part) in self._under[0][1]:
+                for part in _pending(e, self._under):  # operands first, without deep recursion
+                    if id(part) in self._under:
                         continue  # asked for meanwhile, for the lengths of others
                     self._bound(part)
                     self._kept.append(part)
-            found = {id(known[id(e)]): known[id(e)] for _, known in self._under}
+            found = {id(bound): bound for bound in self._under[id(e)]}
             self._known[id(e)] = tuple(_hull(singles) for singles in zip(*found.values(), strict=True))
         return self._known[id(e)]
 
     def _bound(self, e: ir.Expr) -> None:
         """Note the intervals of an expression under every table; tables that agree share them."""
-        cut, parts, leaf = self._cut(e), ir.children(e), self._leaf(e)
+        cut, leaf = self._cut(e), self._leaf(e)
+        if leaf is not None:
+            self._under[id(e)] = (self._narrowed(e, leaf, cut),) * len(TABLES)
+            return
         made: dict[tuple[int, ...], Bound] = {}
-        for transfer, known in self._under:
-            operands = [known[id(c)] for c in parts]
-            key = () if leaf is not None else (transfer.signature(e), *map(id, operands))
+        found: list[Bound] = []
+        operands = zip(*[self._under[id(c)] for c in ir.children(e)], strict=True)
+        for transfer, said, of in zip(transfers(), signatures(e), operands, strict=True):
+            key = (said, *map(id, of))
             if key not in made:
-                found = transfer.apply(e, operands) if leaf is None else leaf
-                made[key] = self._narrowed(e, found, cut)
-            known[id(e)] = made[key]
+                made[key] = self._narrowed(e, transfer.apply(e, of), cut)
+            found.append(made[key])
+        self._under[id(e)] = tuple(found)
 
     def _leaf(self, e: ir.Expr) -> Bound | None:
         """The intervals of what is the same under every table; None for operations."""

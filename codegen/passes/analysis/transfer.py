@@ -49,6 +49,11 @@ def transfers() -> tuple[Transfer, ...]:
     return tuple(Transfer(name) for name in TABLES)
 
 
+def signatures(e: ir.Expr) -> tuple[int, ...]:
+    """The signature of the expression's operation under each table."""
+    return _signatures_of(_operation(e))
+
+
 class Transfer:
     """The operations of one table over ranges."""
 
@@ -59,12 +64,12 @@ class Transfer:
         """A number that tables share if and only if they say the same of the expression's operation."""
         return _signature_of(self.context.table.name, _operation(e))
 
-    def apply(self, e: ir.Expr, parts: list[Bound]) -> Bound:
+    def apply(self, e: ir.Expr, parts: tuple[Bound, ...]) -> Bound:
         """The value of an operation on values; not for leaves and calls."""
         key = (*_words(e), self.signature(e), *map(id, parts))
         return remembered(key, lambda: self.computed(e, parts), parts)
 
-    def computed(self, e: ir.Expr, parts: list[Bound]) -> Bound:
+    def computed(self, e: ir.Expr, parts: tuple[Bound, ...]) -> Bound:
         """The value of an operation, computed."""
         context = self.context
         match e:
@@ -74,7 +79,7 @@ class Transfer:
                 return self.each(e.op, lambda a: binary(context, e.op, a[0], a[1]), parts)
             case ir.Builtin() if e.op in VECTOR_BUILTINS:
                 context.operation = e.op
-                found = VECTOR_BUILTINS[e.op](context, *cast(list[tuple[Range, ...]], parts))
+                found = VECTOR_BUILTINS[e.op](context, *cast(tuple[tuple[Range, ...], ...], parts))
                 return found if isinstance(found, tuple) else (found,)
             case ir.Builtin():
                 return self.each(e.op, lambda a: scalar_builtin(context, e.op, a), parts)
@@ -96,7 +101,7 @@ class Transfer:
             case _:
                 raise TypeError(type(e).__name__)
 
-    def each(self, op: str, apply: Callable[[Bound], Single], parts: list[Bound]) -> Bound:
+    def each(self, op: str, apply: Callable[[Bound], Single], parts: tuple[Bound, ...]) -> Bound:
         """An operation component by component."""
         self.context.operation = op
         size = max(map(len, parts))
@@ -140,6 +145,11 @@ def _signature_of(name: str, operation: str) -> int:
             row = table.row(each)
             shown.append(repr((row.accuracy, row.magnitude, row.reciprocal, row.zero, row.normal)))
     return _numbers.setdefault(_Said("\n".join(shown)), len(_numbers))
+
+
+@functools.cache
+def _signatures_of(operation: str) -> tuple[int, ...]:
+    return tuple(_signature_of(name, operation) for name in TABLES)
 
 
 def _either(a: Single, b: Single) -> Single:

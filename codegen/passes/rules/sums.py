@@ -69,6 +69,9 @@ def _subtracts(e: ir.Expr, depth: int) -> bool:
             return any(x < 0 for x in constant_components(e) or ())
 
 
+_ZERO = Fraction(0)
+
+
 @dataclass(frozen=True)
 class _Sum:
     """A sum of products, and whether a product of variables cancelled on the way."""
@@ -118,7 +121,7 @@ def _added(a: _Sum | None, b: _Sum | None, op: str) -> _Sum | None:
         return None
     total, cancels = dict(a.terms), a.cancels or b.cancels
     for monomial, factor in b.terms.items():
-        added = total.get(monomial, Fraction(0)) + (factor if op == "+" else -factor)
+        added = total.get(monomial, _ZERO) + (factor if op == "+" else -factor)
         cancels = cancels or (added == 0 and factor != 0 and bool(monomial))
         total[monomial] = added
     return _Sum(total, cancels) if len(total) <= MOST_TERMS else None
@@ -131,7 +134,7 @@ def _multiplied(a: _Sum | None, b: _Sum | None) -> _Sum | None:
     for p, x in a.terms.items():
         for q, y in b.terms.items():
             monomial = tuple(sorted((*p, *q)))
-            total[monomial] = total.get(monomial, Fraction(0)) + x * y
+            total[monomial] = total.get(monomial, _ZERO) + x * y
     return _Sum(total, a.cancels or b.cancels)
 
 
