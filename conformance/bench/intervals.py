@@ -16,6 +16,7 @@ from codegen.errors import unknown
 from codegen.intervals import TABLES, permitted
 from codegen.library import Library, load_library
 from conformance.cases.drawing import UNIFORM, draw
+from conformance.command_line import run
 
 POINTS = 65536
 RUNS = 2
@@ -58,4 +59,4 @@ def main(functions: tuple[str, ...], tables: tuple[str, ...], points: int, runs:
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -15,6 +15,7 @@ from codegen.files import write_text
 from codegen.version import VERSION
 from conformance.bench.record import as_json, slug
 from conformance.bench.run import Place, in_worker, places, side_by_side
+from conformance.command_line import run
 from conformance.factored import page, worker
 from conformance.factored.fits import MATERIALS, fit_row, material_row
 from conformance.factored.plan import library, read_plan
@@ -22,7 +23,13 @@ from conformance.factored.published import WATERLOO
 
 
 @click.command()
-@click.option("--target", "targets", multiple=True, help="Time this target only; repeatable.")
+@click.option(
+    "--target",
+    "targets",
+    multiple=True,
+    type=click.Choice(TARGETS),
+    help="Time this target only; repeatable.",
+)
 @click.option("--driver", "drivers", multiple=True, help="Time this driver by its name; repeatable.")
 @click.option("--fits/--no-fits", "fitted", default=True, help="Fit again, or take what is recorded.")
 @click.option("--speed/--no-speed", "timed", default=True, help="Whether to time.")
@@ -79,4 +86,4 @@ def fit_all(materials: Path, kept: dict[str, Any]) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -12,6 +12,7 @@ from codegen.library import load_library
 from conformance.cases.found import FOLDER
 from conformance.check import show
 from conformance.check.engine import backend
+from conformance.command_line import run
 from conformance.search.climb import Find, climb
 from conformance.search.corpus import keep
 from conformance.search.objective import Objective
@@ -65,4 +66,4 @@ def told(find: Find) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

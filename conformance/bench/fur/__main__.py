@@ -11,7 +11,6 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from codegen.errors import UserError
 from codegen.files import write_text
 from codegen.fur.stages import DIALECTS
 from codegen.library import load_library
@@ -21,13 +20,14 @@ from conformance.bench.fur.measure import measured
 from conformance.bench.fur.page import FIGURE, RESULTS, draw_figure, read_results, update_readme
 from conformance.bench.fur.rounds import THREADS
 from conformance.bench.record import as_json, slug
+from conformance.command_line import run
 from targets import TargetUnavailable
 
 FRAGMENTS_SIDE = 96
 
 
 @click.command()
-@click.option("--target", "targets", multiple=True, help="glsl or wgsl; repeatable.")
+@click.option("--target", "targets", multiple=True, type=click.Choice(tuple(DIALECTS)), help="Repeatable.")
 @click.option("--side", default=1024, show_default=True, help="Pixels along a side of the picture.")
 @click.option("--rounds", default=3, show_default=True, help="Of all frames, forwards and backwards.")
 @click.option("--record", is_flag=True, help="Keep the results, the figure and the table of the README.")
@@ -83,8 +83,4 @@ def show(console: Console, data: dict[str, Any]) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except UserError as error:
-        print(f"fur: {error}", file=sys.stderr)
-        sys.exit(2)
+    run(main)

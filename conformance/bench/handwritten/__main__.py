@@ -9,11 +9,12 @@ from rich.table import Table
 from codegen.backends import TARGETS
 from codegen.library import load_library
 from conformance.bench.handwritten.beside import BY_HAND, FIXED, Row, rows
+from conformance.command_line import run
 from targets import TargetUnavailable, open_runtime
 
 
 @click.command()
-@click.option("--target", "targets", multiple=True, help="glsl, wgsl or opencl; repeatable.")
+@click.option("--target", "targets", multiple=True, type=click.Choice(TARGETS), help="Repeatable.")
 def main(targets: tuple[str, ...]) -> None:
     """Time and error of the scene's function, the general one and two written by hand, in one process."""
     console, library = Console(width=110), load_library()
@@ -48,4 +49,4 @@ def table(found: list[Row], title: str) -> Table:
 
 
 if __name__ == "__main__":
-    main()
+    run(main)
