@@ -19,10 +19,10 @@ class Shard:
 
     @staticmethod
     def parse(text: str) -> Shard:
-        """2/3 as a shard; raises UserError for anything else."""
-        match = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+        """2/3 as a shard; raises UserError for anything else, and for more parts than anybody has machines."""
+        match = re.fullmatch(r"([0-9]{1,3})/([0-9]{1,3})", text)
         if match is None or not 1 <= int(match[1]) <= int(match[2]):
-            raise UserError(f'"{text}" is no shard; write 1/3, 2/3 or 3/3')
+            raise UserError(f'"{text}" is no shard; write 1/3, 2/3 or 3/3, of at most 999')
         return Shard(int(match[1]), int(match[2]))
 
     def holds(self, function: str, target: str) -> bool:

@@ -108,6 +108,11 @@ FINDINGS: dict[str, tuple[str, str | bytes, str]] = {
         '[{"function": 1, "identity": "x", "words": ""}]',
         "function, identity and words are texts",
     ),
+    "shard of a million": (
+        "results",
+        json.dumps(made("results").trees[0] | {"shard": "1/999999"}),
+        '"1/999999" is no shard',
+    ),
     "JSON nested too deeply": ("results", DEEP, "is nested too deeply"),
     "word of more than 32 bits": (
         "results",
