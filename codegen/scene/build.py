@@ -27,7 +27,7 @@ from codegen.scene.description.document import Scene
 from codegen.scene.description.lights import UNROLLED
 from codegen.scene.environment import ConstantLight, MapError
 from codegen.scene.general import General, general_function
-from codegen.scene.proof.errors import Floats, as_floats
+from codegen.scene.proof.errors import Floats, as_floats, reference_values
 from codegen.scene.proof.points import SEED, Points, draw
 from codegen.scene.proof.proof import Proof, Results, prove
 from codegen.scene.reduction.knowledge import Given, Knowledge
@@ -131,8 +131,9 @@ class Builder:
         general = general_function(self.scene, constant)
         library = self.library.with_functions([general.function])
         self.say("searching")
+        points = draw(self.scene, general, SEARCH_POINTS)
+        reducer = Reducer.of(library, self.scene, general, points, forked=not self.executed)
         ahead = beside(lambda: self.ahead(library, general, list(constant), pixels), forked=not self.executed)
-        reducer = Reducer.of(library, self.scene, general, draw(self.scene, general, SEARCH_POINTS))
         self.check_budget(reducer.reference.rounding)
         first, *others = self.scene.dialects
         self.say(f"searching for {first}")
@@ -183,10 +184,11 @@ class Builder:
     ) -> Ahead:
         """What the proofs need of the general function, and the error of the map's lights."""
         points = draw(self.scene, general, PROOF_POINTS if self.executed else UNEXECUTED_POINTS, SEED + 1)
-        exact = as_floats(evaluate(library, general.function.name, points.inputs, "float64"))
         single = None
-        if not self.executed:
-            single = as_floats(evaluate(library, general.function.name, points.inputs, "float32"))
+        if self.executed:
+            exact = as_floats(evaluate(library, general.function.name, points.inputs, "float64"))
+        else:
+            exact, single = reference_values(library, general.function.name, points)
         error = None if pixels is None else self.map_error(library, lights, pixels)
         return Ahead(points, exact, single, error)
 

@@ -64,6 +64,14 @@ def _largest(a: Floats) -> Floats:
     return found
 
 
+def reference_values(library: Library, name: str, points: Points) -> tuple[Floats, Floats]:
+    """A function of the library over points: in float64, and as float32 rounds it."""
+    exact, single = (
+        evaluate(library, name, points.inputs, arithmetic) for arithmetic in ("float64", "float32")
+    )
+    return as_floats(exact), as_floats(single)
+
+
 SCREEN = 2_500
 """Points that a candidate is tried on before all of them are asked."""
 
@@ -84,9 +92,7 @@ class Reference:
     @staticmethod
     def of(library: Library, name: str, points: Points) -> Reference:
         """The reference of a function of the library."""
-        exact = as_floats(evaluate(library, name, points.inputs, "float64"))
-        single = as_floats(evaluate(library, name, points.inputs, "float32"))
-        return Reference(points, exact, single, Memory())
+        return Reference(points, *reference_values(library, name, points), Memory())
 
     @property
     def rounding(self) -> float:

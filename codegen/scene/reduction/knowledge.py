@@ -8,11 +8,14 @@ import numpy as np
 
 from codegen.ir.domains import Interval
 from codegen.ir.types import BOOL, F32, Array, Vector
+from codegen.library import Library
+from codegen.passes.specialise import Specialised, specialise
 from codegen.scene.description.document import Scene
+from codegen.scene.description.lights import UNROLLED
 from codegen.scene.description.model import COLOUR, LIGHT, Slot
 from codegen.scene.description.settings import Alias, Constant, Range
 from codegen.scene.general import General
-from codegen.scene.reduction.sites import Known
+from codegen.scene.reduction.sites import Known, plainly_named
 
 Number = float | int | bool
 Given = Number | tuple[Number, ...] | list["Given"]
@@ -26,6 +29,24 @@ class Knowledge:
     aliases: dict[str, str] = field(default_factory=dict)
     ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
     facts: tuple[tuple[str, float, float], ...] = ()
+
+    def specialised(self, library: Library, name: str, new_name: str, powers: int = 0) -> Specialised:
+        """A function of the library with what is known put in; locals have no names of copies.
+
+        powers  largest constant whole exponent that becomes multiplications
+        """
+        made = specialise(
+            library,
+            name,
+            self.constants,
+            self.aliases,
+            self.ranges,
+            self.facts,
+            new_name=new_name,
+            powers=powers,
+            unroll=UNROLLED,
+        )
+        return replace(made, function=plainly_named(made.function))
 
 
 def knowledge(scene: Scene, general: General) -> Knowledge:

@@ -8,8 +8,10 @@ variants at call sites, looser forms of the geometry, numbers for terms that har
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import partial
 
+from codegen.evaluate.memory import Memory
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Unit
 from codegen.ir.types import VEC3
@@ -19,10 +21,11 @@ from codegen.passes.rules.powers import LARGEST, ROWS
 from codegen.passes.rules.sine_powers import FUNCTION as SINE_POWER
 from codegen.passes.specialise import Specialised, specialise
 from codegen.passes.ssa.text import show
+from codegen.scene.beside import beside
 from codegen.scene.description.document import Scene
 from codegen.scene.description.lights import UNROLLED
 from codegen.scene.general import General
-from codegen.scene.proof.errors import Measured, Reference
+from codegen.scene.proof.errors import Measured, Reference, reference_values
 from codegen.scene.proof.points import Points
 from codegen.scene.reduction.drops import Term, parts_of, terms, without
 from codegen.scene.reduction.knowledge import Knowledge, knowledge, model_ranges
@@ -30,7 +33,7 @@ from codegen.scene.reduction.loosen import BUNDLES, SPLAT, Form, loosened
 from codegen.scene.reduction.prices import Prices
 from codegen.scene.reduction.scales import gathered
 from codegen.scene.reduction.search import Found, Search, Substitution
-from codegen.scene.reduction.sites import Path, plainly_named
+from codegen.scene.reduction.sites import Path
 
 SETTLED = frozenset((*ROWS, SINE_POWER))
 """What whole exponents turn into multiplications, so that no variant is looked for."""
@@ -97,11 +100,21 @@ class Reducer:
     _looser: dict[tuple[tuple[ir.Stmt, ...], str], ir.Function | None] = field(default_factory=dict)
 
     @staticmethod
-    def of(library: Library, scene: Scene, general: General, points: Points) -> Reducer:
-        """The reducer of a scene over points of it; `library` holds the general function."""
-        reference = Reference.of(library, general.function.name, points)
+    def of(
+        library: Library, scene: Scene, general: General, points: Points, *, forked: bool = False
+    ) -> Reducer:
+        """The reducer of a scene over points of it; `library` holds the general function.
+
+        forked  whether the reference may be evaluated in another process, while the exact passes run here
+        """
+        values = beside(partial(reference_values, library, general.function.name, points), forked=forked)
+        known = knowledge(scene, general)
+        made: dict[tuple[object, ...], Specialised] = {}
+        if forked:
+            made[(), 0] = known.specialised(library, general.function.name, scene.function)
+        reference = Reference(points, *values(), Memory())
         search = Search(library, general, reference, model_ranges(scene, general))
-        return Reducer(library, general, knowledge(scene, general), reference, search, scene.function)
+        return Reducer(library, general, known, reference, search, scene.function, made)
 
     def exact(self) -> Specialised:
         """The function after exact passes only."""
@@ -115,19 +128,7 @@ class Reducer:
             if choices:
                 functions = self.search.functions(choices, f"{self.general.function.name}_chosen")
                 library, name = library.with_functions(functions), functions[-1].name
-            known = self.knowledge
-            made = specialise(
-                library,
-                name,
-                known.constants,
-                known.aliases,
-                known.ranges,
-                known.facts,
-                new_name=self.name,
-                powers=powers,
-                unroll=UNROLLED,
-            )
-            self._made[key] = replace(made, function=plainly_named(made.function))
+            self._made[key] = self.knowledge.specialised(library, name, self.name, powers)
         return self._made[key]
 
     def reduced(self, prices: Prices, budget: float) -> Reduced:
