@@ -112,11 +112,11 @@ def divide(context: Context, row: Row, x: Range, y: Range) -> Found | None:
     if not count or "x" in row.magnitude or row.normal:
         return None
     assert isinstance(row.accuracy, Ulp)
-    low, high, look = kernels().divide(*_ends(x), *_ends(y), row.accuracy.ulps, *limits(row, "y"), count)
+    low, high, look = kernels().divide(*_ends(x), *_ends(y), row.accuracy.ulps, *_limits(row, "y"), count)
     return low, high, look, None
 
 
-def limits(row: Row, operand: str) -> tuple[float, float]:
+def _limits(row: Row, operand: str) -> tuple[float, float]:
     """Least and largest magnitude of an operand for which the row promises something."""
     if operand not in row.magnitude:
         return _NEVER_NEAR, _NEVER_FAR
@@ -141,7 +141,7 @@ def absolute_or_ulp(context: Context, promise: Absolute, x: Range, low: Array, h
     if not count or promise.elsewhere is None:
         return None
     low, high, look = kernels().absolute_or_ulp(
-        x.low, x.high, low, high, promise.bound, *promise.within, promise.elsewhere.ulps, count
+        *_ends(x), *ends(low, high), promise.bound, *promise.within, promise.elsewhere.ulps, count
     )
     return low, high, look, None
 
@@ -153,7 +153,7 @@ def square_root(context: Context, x: Range, root: Row, quotient: Row) -> Found |
         return None
     assert isinstance(root.accuracy, Ulp) and isinstance(quotient.accuracy, Ulp)
     low, high, look = kernels().square_root(
-        *_ends(x), root.accuracy.ulps, quotient.accuracy.ulps, *limits(quotient, "y"), count
+        *_ends(x), root.accuracy.ulps, quotient.accuracy.ulps, *_limits(quotient, "y"), count
     )
     return low, high, look, None
 

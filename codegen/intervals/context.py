@@ -16,7 +16,6 @@ from codegen.intervals.causes import Cause, CauseBook, Codes, mark
 from codegen.intervals.compiled import wanted
 from codegen.intervals.memory import Memory
 from codegen.intervals.numbers import Array
-from codegen.intervals.recording import Recorder
 from codegen.intervals.tables import Table
 from codegen.intervals.values import Single
 from codegen.ir.nodes import Const
@@ -54,7 +53,6 @@ class Context:
     constants, literals  literals by their value, and by the identity of their node
     loops   whether operations run as compiled loops, see codegen.intervals.bulk
     memory  results by what they were computed from
-    recorder  writes down what is done, if anything does
     """
 
     table: Table
@@ -67,7 +65,6 @@ class Context:
     forks: int = 0
     constants: dict[Hashable, Single] = field(default_factory=dict)
     literals: dict[int, tuple[Const, Single]] = field(default_factory=dict)
-    recorder: Recorder | None = None
 
     def __post_init__(self) -> None:
         self.loops = self.table.flush and wanted(self.lanes)

@@ -7,7 +7,6 @@ however often it is written. (A compiler that computes one value twice in two wa
 from __future__ import annotations
 
 import functools
-import itertools
 from collections.abc import Callable, Hashable
 from typing import Any, TypeVar, cast
 
@@ -26,7 +25,6 @@ from codegen.intervals.values import (
     Whole,
     all_of,
     always,
-    any_of,
     choose,
     constant,
     opposite,
@@ -37,7 +35,6 @@ from codegen.library import Library
 
 Singles = tuple[Single, ...]
 V = TypeVar("V")
-Apply = Callable[[Context, Singles], V]
 
 
 class Frame:
@@ -68,33 +65,31 @@ class Frame:
                 case ir.Let():
                     self.scope[s.name] = self.expr(s.value)
                 case ir.Assign():
-                    live = self.both(active, self.opposite(self.returned))
-                    self.scope[s.name] = self.choose(live, self.expr(s.value), self.scope[s.name])
+                    live = all_of(active, opposite(self.returned))
+                    self.scope[s.name] = choose(live, self.expr(s.value), self.scope[s.name])
                 case ir.If():
                     condition = self.truth(s.condition)
-                    self.block(s.then, self.both(active, condition))
-                    self.block(s.orelse, self.both(active, self.opposite(condition)))
+                    self.block(s.then, all_of(active, condition))
+                    self.block(s.orelse, all_of(active, opposite(condition)))
                 case ir.For():
                     self.loop(s, active)
                 case ir.Return():
                     value = self.expr(s.value)
-                    live = self.both(active, self.opposite(self.returned))
-                    self.result = value if self.result is None else self.choose(live, value, self.result)
-                    self.returned = self.either(self.returned, live)
+                    live = all_of(active, opposite(self.returned))
+                    self.result = value if self.result is None else choose(live, value, self.result)
+                    self.returned = Truth(self.returned.true | live.true, self.returned.false & live.false)
 
     def loop(self, s: ir.For, active: Truth) -> None:
         """All iterations that any lane may run."""
         limit = None if s.limit is None else self.expr(s.limit)
         assert limit is None or isinstance(limit, Whole)
-        if limit is not None and self.context.recorder is not None:
-            self.context.recorder.give_up()  # how often it runs depends on the lanes
         stop = s.stop if limit is None else min(s.stop, int(limit.high.max()))
         signed = s.index_type == I32
         for i in range(s.start, stop):
             key = ("i32", i) if signed else ("u32", "int", i, str(i))
             self.scope[s.name] = self.shared(key, functools.partial(constant, i, signed))
             running = always(True) if limit is None else Truth(limit.high > i, limit.low <= i)
-            self.block(s.body, self.both(active, running))
+            self.block(s.body, all_of(active, running))
 
     def truth(self, e: ir.Expr) -> Truth:
         value = self.expr(e)
@@ -117,11 +112,11 @@ class Frame:
         return self.scope[e.name]
 
     def unary(self, e: ir.Unary) -> Value:
-        return self.each(e.op, lambda context, a: unary(context, e.op, a[0]), (self.expr(e.operand),))
+        return self.each(e.op, lambda a: unary(self.context, e.op, a[0]), (self.expr(e.operand),))
 
     def binary(self, e: ir.Binary) -> Value:
         parts = (self.expr(e.left), self.expr(e.right))
-        return self.each(e.op, lambda context, a: binary(context, e.op, a[0], a[1]), parts)
+        return self.each(e.op, lambda a: binary(self.context, e.op, a[0], a[1]), parts)
 
     def convert(self, e: ir.Convert) -> Value:
         return self.converted(e.type, self.expr(e.operand))
@@ -143,31 +138,7 @@ class Frame:
     def select(self, e: ir.Select) -> Value:
         condition, if_true, if_false = (self.expr(c) for c in ir.children(e))
         assert isinstance(condition, Truth)
-        return self.choose(condition, if_true, if_false)
-
-    def both(self, a: Truth, b: Truth) -> Truth:
-        """Conjunction."""
-        return self.noted("and", all_of(a, b), a, b)
-
-    def opposite(self, a: Truth) -> Truth:
-        """Negation."""
-        return self.noted("not", opposite(a), a)
-
-    def either(self, a: Truth, b: Truth) -> Truth:
-        """Disjunction."""
-        return self.noted("or", any_of(a, b), a, b)
-
-    def noted(self, op: str, found: Truth, *parts: Truth) -> Truth:
-        if self.context.recorder is not None:
-            self.context.recorder.operation(op, None, parts, found, self.context.forks)
-        return found
-
-    def choose(self, condition: Truth, if_true: Value, if_false: Value) -> Value:
-        """One of two values, or their hull."""
-        found = choose(condition, if_true, if_false)
-        if self.context.recorder is not None and if_true is not if_false:
-            self.context.recorder.choice(condition, if_true, if_false, found)
-        return found
+        return choose(condition, if_true, if_false)
 
     def element(self, value: Value, index: Value) -> Value:
         """The element of an array, or the hull of those that the number may name."""
@@ -176,7 +147,7 @@ class Frame:
         found = value["0"]
         for k in range(1, len(value)):
             may, must = (index.low <= k) & (k <= index.high), (index.low == k) & (index.high == k)
-            found = self.choose(Truth(may, ~must), value[str(k)], found)
+            found = choose(Truth(may, ~must), value[str(k)], found)
         return found
 
     def shared(self, key: Hashable, make: Callable[[], Single]) -> Single:
@@ -186,7 +157,7 @@ class Frame:
             constants[key] = make()
         return constants[key]
 
-    def each(self, op: str, apply: Apply[Single], parts: tuple[Value, ...]) -> Value:
+    def each(self, op: str, apply: Callable[[Singles], Single], parts: tuple[Value, ...]) -> Value:
         """An operation component by component; a scalar operand goes with every component of a vector."""
         size = 0
         for p in parts:
@@ -197,7 +168,7 @@ class Frame:
         columns = [p if isinstance(p, tuple) else (p,) * size for p in parts]
         return tuple(self.once(op, apply, components) for components in zip(*columns, strict=True))
 
-    def once(self, op: str, apply: Apply[V], parts: Singles) -> V:
+    def once(self, op: str, apply: Callable[[Singles], V], parts: Singles) -> V:
         """An operation on these very values; the result of the first time counts."""
         names = [p.number for p in parts]
         if op in ("+", "*"):
@@ -207,10 +178,7 @@ class Frame:
         found = memory.recall(key)
         if found is None:
             self.context.operation = op
-            forks = self.context.forks
-            found = memory.keep(key, apply(self.context, parts))
-            if self.context.recorder is not None:
-                self.context.recorder.operation(op, apply, parts, found, forks)
+            found = memory.keep(key, apply(parts))
         return cast(V, found)
 
     def builtin(self, e: ir.Builtin) -> Value:
@@ -222,16 +190,13 @@ class Frame:
         if texture is not None:
             uv = cast(tuple[Range, ...], args[1])
             lod = cast(Range, args[2]) if len(args) > 2 else None
-            if self.context.recorder is not None:
-                self.context.recorder.give_up()
             return lookup(self.context, texture, uv[0], uv[1], lod)
         if op in VECTOR_BUILTINS:
             vectors = [cast(tuple[Range, ...], a) for a in args]
             flat = tuple(c for v in vectors for c in v)
             function = VECTOR_BUILTINS[op]
-            sizes = [len(v) for v in vectors]
-            return self.once(op, lambda context, a: cast(Value, function(context, *split(a, sizes))), flat)
-        return self.each(op, lambda context, a: scalar_builtin(context, op, a), args)
+            return self.once(op, lambda _: cast(Value, function(self.context, *vectors)), flat)
+        return self.each(op, lambda a: scalar_builtin(self.context, op, a), args)
 
     def call(self, e: ir.Call) -> Value:
         function = self.library.function(e.function)
@@ -251,13 +216,13 @@ class Frame:
     def converted(self, type_: Type, value: Value) -> Value:
         assert isinstance(type_, Scalar)
 
-        def apply(context: Context, parts: Singles) -> Single:
+        def apply(parts: tuple[Single, ...]) -> Single:
             a = parts[0]
             if isinstance(a, Range):
-                return a if type_ == F32 else logic.to_integer(context, a, type_ == I32)
+                return a if type_ == F32 else logic.to_integer(self.context, a, type_ == I32)
             assert isinstance(a, Whole)
             if type_ == F32:
-                return logic.to_float(context, a)
+                return logic.to_float(self.context, a)
             return reinterpreted(a, type_ == I32)
 
         return self.once(f"{type_.name}()", apply, (cast(Single, value),))
@@ -277,12 +242,6 @@ _EVALUATE: dict[type, Callable[[Frame, Any], Value]] = {
     ir.Swizzle: Frame.swizzle,
     ir.Select: Frame.select,
 }
-
-
-def split(flat: Singles, sizes: list[int]) -> list[tuple[Range, ...]]:
-    """Vectors of some sizes, one after another."""
-    ends = list(itertools.accumulate(sizes))
-    return [cast(tuple[Range, ...], flat[end - size : end]) for size, end in zip(sizes, ends, strict=True)]
 
 
 def reinterpreted(a: Whole, is_signed: bool) -> Whole:

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from codegen.intervals import loops
 from codegen.intervals.lanes import (
     at,
     compiled,
@@ -22,13 +21,14 @@ from codegen.intervals.lanes import (
     inlined,
     least_within,
     most_within,
+    nearest,
     settled_high,
     settled_low,
     sum_down,
     sum_up,
     up,
 )
-from codegen.intervals.numbers import FLOAT64_MARGIN, LARGEST
+from codegen.intervals.numbers import FLOAT64_MARGIN, LARGEST, SMALLEST
 
 Ends = Any
 
@@ -36,29 +36,52 @@ Ends = Any
 @compiled
 def add(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
     """a + b, rounded to either neighbour."""
-    low, high = np.empty(count), np.empty(count)
-    return low, high, loops.add(a_low, a_high, b_low, b_high, low, high)
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        x = settled_low(sum_down(at(a_low, i), at(b_low, i)))
+        y = settled_high(sum_up(at(a_high, i), at(b_high, i)))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
 
 
 @compiled
 def subtract(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
     """a - b, rounded to either neighbour."""
-    low, high = np.empty(count), np.empty(count)
-    return low, high, loops.subtract(a_low, a_high, b_low, b_high, low, high)
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        x = settled_low(sum_down(at(a_low, i), -at(b_high, i)))
+        y = settled_high(sum_up(at(a_high, i), -at(b_low, i)))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
 
 
 @compiled
 def multiply(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
     """a b, rounded to either neighbour."""
-    low, high = np.empty(count), np.empty(count)
-    return low, high, loops.multiply(a_low, a_high, b_low, b_high, low, high)
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        p, q = at(a_low, i) * at(b_low, i), at(a_high, i) * at(b_low, i)
+        r, s = at(a_low, i) * at(b_high, i), at(a_high, i) * at(b_high, i)
+        x = settled_low(down(min(min(p, q), min(r, s))))
+        y = settled_high(up(max(max(p, q), max(r, s))))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
 
 
 @compiled
 def square(a_low: Ends, a_high: Ends, count: int) -> Any:
     """a a, rounded to either neighbour."""
-    low, high = np.empty(count), np.empty(count)
-    return low, high, loops.square(a_low, a_high, low, high)
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        p, q = at(a_low, i), at(a_high, i)
+        near, far = max(max(p, -q), 0.0), max(abs(p), abs(q))
+        x, y = settled_low(down(near * near)), settled_high(up(far * far))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
 
 
 @compiled
@@ -81,7 +104,7 @@ def absolute_or_ulp(
     """Float32 within a bound where x lies from first to last, elsewhere within some ULP."""
     least, most, look = np.empty(count), np.empty(count), 0
     for i in range(count):
-        p, q, u, v = low[i], high[i], x_low[i], x_high[i]
+        p, q, u, v = at(low, i), at(high, i), at(x_low, i), at(x_high, i)
         near_low = up(p - abs(p) * FLOAT64_MARGIN - bound)
         near_high = down(q + abs(q) * FLOAT64_MARGIN + bound)
         far_low, far_high = least_within(p, q, ulps), most_within(p, q, ulps)
@@ -100,15 +123,36 @@ def divide(
     x_low: Ends, x_high: Ends, y_low: Ends, y_high: Ends, ulps: float, near: float, far: float, count: int
 ) -> Any:
     """x / y within some ULP; looked at where |y| may lie below `near` or above `far`."""
-    low, high = np.empty(count), np.empty(count)
-    return low, high, loops.divide(x_low, x_high, y_low, y_high, ulps, near, far, low, high)
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        p, q, u, v = at(x_low, i), at(x_high, i), at(y_low, i), at(y_high, i)
+        look |= (max(u, -v) < near) | (max(abs(u), abs(v)) > far)
+        negative = v < 0.0
+        least, most = (-q if negative else p), (-p if negative else q)
+        small, large = (-v if negative else u), (-u if negative else v)
+        a, b = min(least / large, least / small), max(most / small, most / large)
+        x, y = settled_low(least_within(a, b, ulps)), settled_high(most_within(a, b, ulps))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
+
+
+@inlined
+def _inverse_root(low: Any, high: Any, ulps: Any) -> Any:
+    near, far = 1.0 / np.sqrt(max(high, SMALLEST)), 1.0 / np.sqrt(max(low, SMALLEST))
+    return settled_low(least_within(near, far, ulps)), settled_high(most_within(near, far, ulps))
 
 
 @compiled
 def inverse_square_root(x_low: Ends, x_high: Ends, ulps: float, count: int) -> Any:
     """1 / sqrt(x); looked at where x may be 0 or less."""
-    low, high = np.empty(count), np.empty(count)
-    return low, high, loops.inverse_square_root(x_low, x_high, ulps, low, high)
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        p, q = at(x_low, i), at(x_high, i)
+        x, y = _inverse_root(p, q, ulps)
+        low[i], high[i] = x, y
+        look |= (p <= 0.0) | (y > LARGEST)
+    return low, high, look
 
 
 @compiled
@@ -116,8 +160,19 @@ def square_root(
     x_low: Ends, x_high: Ends, ulps: float, ulps_divide: float, near: float, far: float, count: int
 ) -> Any:
     """1 / (1 / sqrt(x)), each within its ULP, 0 where x may be 0; looked at where x may be negative."""
-    low, high = np.empty(count), np.empty(count)
-    return low, high, loops.square_root(x_low, x_high, ulps, ulps_divide, near, far, low, high)
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        p, q = at(x_low, i), at(x_high, i)
+        u, v = _inverse_root(p, q, ulps)
+        least, most = 1.0 / v, 1.0 / u
+        x, y = (
+            settled_low(least_within(least, most, ulps_divide)),
+            settled_high(most_within(least, most, ulps_divide)),
+        )
+        x, y = (0.0 if p < SMALLEST else x), (0.0 if q <= 0.0 else y)
+        low[i], high[i] = x, y
+        look |= (p < 0.0) | (u < near) | (v > far) | (y > LARGEST)
+    return low, high, look
 
 
 @inlined
@@ -194,42 +249,67 @@ def scaled_dot(
 def choose(true: Ends, false: Ends, a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
     """a where a condition holds, b where it does not, the hull where it may do either."""
     low, high = np.empty(count), np.empty(count)
-    loops.choose(true, false, a_low, a_high, b_low, b_high, low, high)
+    for i in range(count):
+        t, f = at(true, i), at(false, i)
+        p, q, r, s = at(a_low, i), at(b_low, i), at(a_high, i), at(b_high, i)
+        low[i] = min(p, q) if t & f else (p if t else q)
+        high[i] = max(r, s) if t & f else (r if t else s)
     return low, high
 
 
 @compiled
 def multiply_nearest(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
     """Ends of the exact products; and of a b, rounded to nearest."""
-    least, most, low, high = np.empty(count), np.empty(count), np.empty(count), np.empty(count)
-    return (
-        least,
-        most,
-        low,
-        high,
-        loops.multiply_nearest(a_low, a_high, b_low, b_high, least, most, low, high),
-    )
+    low, high, look = np.empty(count), np.empty(count), 0
+    least, most = np.empty(count), np.empty(count)
+    for i in range(count):
+        p, q = at(a_low, i) * at(b_low, i), at(a_high, i) * at(b_low, i)
+        r, s = at(a_low, i) * at(b_high, i), at(a_high, i) * at(b_high, i)
+        u, v = min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
+        x, y = settled_low(nearest(u)), settled_high(nearest(v))
+        least[i], most[i], low[i], high[i] = u, v, x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return least, most, low, high, look
 
 
 @compiled
 def multiply_points(a: Ends, b: Ends, count: int) -> Any:
     """Exact products of numbers, and these rounded to nearest; looked at below the normal numbers as well."""
-    exact, near = np.empty(count), np.empty(count)
-    return exact, near, loops.multiply_points(a, b, exact, near)
+    exact, near, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        p = at(a, i) * at(b, i)
+        x = nearest(p)
+        exact[i], near[i] = p, x
+        look |= _unusual(x)
+    return exact, near, look
 
 
 @compiled
 def add_points(a: Ends, b: Ends, count: int) -> Any:
     """Sums of numbers, rounded to nearest; looked at below the normal numbers as well."""
-    near = np.empty(count)
-    return near, loops.add_points(a, b, near)
+    near, look = np.empty(count), 0
+    for i in range(count):
+        x = nearest(at(a, i) + at(b, i))
+        near[i] = x
+        look |= _unusual(x)
+    return near, look
+
+
+@inlined
+def _unusual(x: Any) -> Any:
+    return (not abs(x) <= LARGEST) | ((abs(x) < SMALLEST) & (x != 0.0))
 
 
 @compiled
 def add_nearest(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
     """a + b, rounded to nearest."""
-    low, high = np.empty(count), np.empty(count)
-    return low, high, loops.add_nearest(a_low, a_high, b_low, b_high, low, high)
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        x = settled_low(nearest(at(a_low, i) + at(b_low, i)))
+        y = settled_high(nearest(at(a_high, i) + at(b_high, i)))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
 
 
 @compiled
@@ -237,25 +317,45 @@ def add_fused(
     a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, least: Ends, most: Ends, count: int
 ) -> Any:
     """a + b, rounded to nearest, or the exact product that is a, between `least` and `most`, plus b."""
-    low, high = np.empty(count), np.empty(count)
-    return low, high, loops.add_fused(a_low, a_high, b_low, b_high, least, most, low, high)
+    low, high, look = np.empty(count), np.empty(count), 0
+    for i in range(count):
+        p, q = nearest(at(a_low, i) + at(b_low, i)), nearest(at(a_high, i) + at(b_high, i))
+        x = settled_low(min(p, sum_down(at(least, i), at(b_low, i))))
+        y = settled_high(max(q, sum_up(at(most, i), at(b_high, i))))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return low, high, look
 
 
 @compiled
 def fuse(low: Ends, high: Ends, a_low: Ends, a_high: Ends, least: Ends, most: Ends, count: int) -> int:
     """Widen settled sums, in place, by those of an exact product with a."""
-    return int(loops.fuse(low, high, a_low, a_high, least, most))
+    look = 0
+    for i in range(count):
+        x = min(low[i], settled_low(sum_down(at(least, i), at(a_low, i))))
+        y = max(high[i], settled_high(sum_up(at(most, i), at(a_high, i))))
+        low[i], high[i] = x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return look
 
 
 @compiled
 def less(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
     """Whether a < b may hold, whether it may fail, and whether both is so in a lane."""
-    true, false = np.empty(count, np.bool_), np.empty(count, np.bool_)
-    return true, false, loops.less(a_low, a_high, b_low, b_high, true, false)
+    true, false, undecided = np.empty(count, np.bool_), np.empty(count, np.bool_), 0
+    for i in range(count):
+        t, f = at(a_low, i) < at(b_high, i), at(a_high, i) >= at(b_low, i)
+        true[i], false[i] = t, f
+        undecided |= t & f
+    return true, false, undecided
 
 
 @compiled
 def at_most(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
     """Whether a <= b may hold, whether it may fail, and whether both is so in a lane."""
-    true, false = np.empty(count, np.bool_), np.empty(count, np.bool_)
-    return true, false, loops.at_most(a_low, a_high, b_low, b_high, true, false)
+    true, false, undecided = np.empty(count, np.bool_), np.empty(count, np.bool_), 0
+    for i in range(count):
+        t, f = at(a_low, i) <= at(b_high, i), at(a_high, i) > at(b_low, i)
+        true[i], false[i] = t, f
+        undecided |= t & f
+    return true, false, undecided

@@ -18,8 +18,6 @@ from codegen.intervals.arithmetic import from_input
 from codegen.intervals.causes import Cause, CauseBook
 from codegen.intervals.context import Context, Ways
 from codegen.intervals.interpreter import Frame
-from codegen.intervals.program import Program
-from codegen.intervals.recording import Recorder
 from codegen.intervals.tables import Table, load_table
 from codegen.intervals.threads import threads
 from codegen.intervals.values import Single, Truth, Value, Whole
@@ -28,10 +26,6 @@ from codegen.library import Library
 
 CHUNK = 16384
 """Lanes evaluated together: few enough for the arrays of an operation to stay in the processor's cache."""
-FEWEST_REPEATED = 12
-"""Chunks above which the first is recorded and repeated over the others, see codegen.intervals.program."""
-MOST_PROGRAMS = 4
-"""Recordings that are tried: other lanes may take ways that those of the first took none of."""
 DEPTH = 6
 """Forks that one lane is followed through; further ones count by their hull."""
 MOST_PARTS = 32
@@ -108,7 +102,6 @@ class _Run:
         arrays, self.count = convert_inputs(types, inputs, arithmetic("float32"), name)
         self.inputs = with_edges(self.function, arrays)
         self.table = table
-        self.programs: tuple[Program, ...] = ()
         self.book = CauseBook()
         kinds = [scalar for _, scalar in leaves(self.function.returns)]
         self.low = [np.empty(self.count, _dtype(kind)) for kind in kinds]
@@ -137,12 +130,6 @@ class _Run:
             with np.errstate(all="ignore"):
                 return self.evaluate(owner[part], chosen)
 
-        self.programs = ()
-        if ways is None and len(parts) > FEWEST_REPEATED:
-            first, *parts = parts
-            with np.errstate(all="ignore"):
-                yield first, self.numbered(*self.evaluate(owner[first], None, Recorder()))
-
         at_a_time = threads()
         if len(parts) < 2 or at_a_time < 2:
             results = map(found, parts)
@@ -163,55 +150,23 @@ class _Run:
         numbers = np.array([0, *(self.book.code(cause) for cause in book.causes)], np.int16)
         return replace(found, codes=numbers[found.codes])
 
-    def evaluate(
-        self, lanes: Array, ways: Ways | None, recorder: Recorder | None = None
-    ) -> tuple[_Found, CauseBook]:
-        """The intervals of some lanes; with a recorder, others may be found by repeating it."""
-        if self.programs:
-            for program in self.programs:
-                if (found := self.repeated(lanes, program)) is not None:
-                    return found, CauseBook()
-            recorder = Recorder() if len(self.programs) < MOST_PROGRAMS else None
+    def evaluate(self, lanes: Array, ways: Ways | None) -> tuple[_Found, CauseBook]:
         book = CauseBook()
         context = Context(self.table, book, len(lanes), ways)
-        context.recorder = recorder if context.loops else None
-        arguments = self.arguments(context, lanes)
-        inputs = _inputs(arguments)
-        if recorder is not None:
-            for single in inputs:
-                recorder.input(single)
-        value = Frame(self.library, context, self.function, arguments).run()
-        singles = list(_singles(value))
-        if context.recorder is not None and not context.recorder.failed:
-            program = Program(context.recorder, self.table, singles, CHUNK)
-            if program.complete:
-                self.programs = (*self.programs, program)
-        return self.found(context, singles), book
-
-    def arguments(self, context: Context, lanes: Array) -> dict[str, Value]:
-        """The inputs of some lanes."""
         context.function, context.line = self.function.name, self.function.place.line
         context.operation = "input"
-        return {p.name: _value(context, p.type, self.inputs[p.name], lanes) for p in self.function.parameters}
-
-    def repeated(self, lanes: Array, program: Program) -> _Found | None:
-        """What a recorded evaluation finds for other lanes; None where it does not apply."""
-        context = Context(self.table, CauseBook(), len(lanes))
-        if not context.loops:
-            return None
-        arguments = self.arguments(context, lanes)
-        singles = program.run(context, _inputs(arguments))
-        return None if singles is None or context.book.causes else self.found(context, singles)
-
-    def found(self, context: Context, singles: list[Single]) -> _Found:
-        """Results as arrays."""
-        low = [np.broadcast_to(_low(s), context.lanes) for s in singles]
-        high = [np.broadcast_to(_high(s), context.lanes) for s in singles]
-        codes = np.zeros(context.lanes, np.int16)
+        arguments = {
+            p.name: _value(context, p.type, self.inputs[p.name], lanes) for p in self.function.parameters
+        }
+        value = Frame(self.library, context, self.function, arguments).run()
+        singles = list(_singles(value))
+        low = [np.broadcast_to(_low(s), len(lanes)) for s in singles]
+        high = [np.broadcast_to(_high(s), len(lanes)) for s in singles]
+        codes = np.zeros(len(lanes), np.int16)
         for s in singles:
             if not isinstance(s, Truth) and s.cause is not None:
                 codes = np.where(codes > 0, codes, s.cause)
-        return _Found(low, high, codes, context.first_fork, context.width)
+        return _Found(low, high, codes, context.first_fork, context.width), book
 
     def store(self, lanes: Array, found: _Found) -> None:
         """Put results in, one for each lane."""
@@ -316,12 +271,6 @@ def _single(context: Context, kind: Scalar, given: Array) -> Single:
         return Truth(given.copy(), ~given)
     whole = given.astype(np.int64)
     return Whole(whole, whole, kind == I32)
-
-
-def _inputs(arguments: dict[str, Value]) -> list[Single]:
-    """All scalars of the inputs; maps are none."""
-    scalars = (s for value in arguments.values() for s in _singles(value))
-    return [s for s in scalars if isinstance(s, Single)]
 
 
 def _singles(value: Value) -> Iterator[Single]:
