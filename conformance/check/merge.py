@@ -51,7 +51,7 @@ def merge(paths: Iterable[Path]) -> Merged:
             try:
                 result = FunctionResult.from_data(entry)
                 check_types(result)
-            except (AttributeError, KeyError, TypeError, ValueError) as e:
+            except (ArithmeticError, AttributeError, KeyError, TypeError, ValueError) as e:
                 raise UserError(f"{path}: a result lacks or misspells {e}") from None
             key = (result.function, result.backend, result.driver)
             if key not in found or found[key].accepted:

@@ -1,6 +1,7 @@
 """Fuzzing of everything that reads a file which a person hands over.
 
-parsers.py    what is fuzzed: readers by name, in descriptions.py, outcomes.py, measured.py, shapes.py, messages.py
+parsers.py    what is fuzzed: readers by name, made in descriptions.py, outcomes.py, measured.py, shapes.py and
+              messages.py
 parser.py     a reader and the files to start from
 readers.py    the modules that read, followed by coverage, and a hash of them
 mutation.py   bytes to a file: damaged text, or a tree with other keys and values, so that it parses

@@ -27,6 +27,7 @@ import click
 
 from conformance.fuzz_parsers import readers, record
 
+STARTED = time.monotonic()
 LONGEST = 1024
 """Bytes of one input."""
 CORPUS = readers.ROOT / "build" / "fuzz_parsers"
@@ -44,7 +45,7 @@ class Run:
     seconds: float
     stored: int = 0
     said: Counter[bool] = field(default_factory=Counter)
-    begin: float = field(default_factory=time.monotonic)
+    begin: float = STARTED
     cpu: float = field(default_factory=time.process_time)
 
     def count(self, refused: bool) -> None:
@@ -77,7 +78,8 @@ def main(
         sys.exit(f"fuzz_parsers: no reader {name}; there are {', '.join(readers.MODULES)}")
     atheris = None if blind or replay is not None else _atheris()
     if atheris is not None:
-        with atheris.instrument_imports(include=list(readers.MODULES[name])):
+        # What is included is told apart by packages alone.
+        with atheris.instrument_imports(include=list(readers.PACKAGES), exclude=readers.others(name)):
             from conformance.fuzz_parsers import mutation, parsers, sandbox
     else:
         from conformance.fuzz_parsers import mutation, parsers, sandbox

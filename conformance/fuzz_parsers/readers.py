@@ -11,6 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 
+PACKAGES = ("codegen", "conformance")
 SHARED = ("codegen.documents", "codegen.errors")
 SCENE = ("codegen.scene.description",)
 CHECK = ("merge", "replay", "result", "failure", "interval", "accuracy", "identity", "shard")
@@ -53,6 +54,16 @@ def sources(name: str) -> list[Path]:
         place = ROOT / Path(*module.split("."))
         found += sorted(place.rglob("*.py")) if place.is_dir() else [place.with_suffix(".py")]
     return found
+
+
+def others(name: str) -> list[str]:
+    """All other modules of the packages that a reader's modules are in."""
+    own = set(sources(name))
+    files = (
+        path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py")) if path not in own
+    )
+    parts = [path.relative_to(ROOT).with_suffix("").parts for path in files]
+    return [".".join(part[:-1] if part[-1] == "__init__" else part) for part in parts]
 
 
 def code_hash(name: str) -> str:

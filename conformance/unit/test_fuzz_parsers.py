@@ -108,6 +108,11 @@ FINDINGS: dict[str, tuple[str, str | bytes, str]] = {
         '[{"function": 1, "identity": "x", "words": ""}]',
         "function, identity and words are texts",
     ),
+    "accuracy beyond any float": (
+        "results",
+        json.dumps(made("results").trees[0]).replace('"maximum": 1.', f'"maximum": 1{"0" * 400}, "x": 1.'),
+        "int too large to convert to float",
+    ),
     "shard of a million": (
         "results",
         json.dumps(made("results").trees[0] | {"shard": "1/999999"}),
