@@ -2,7 +2,8 @@
 
 A mutant is first checked on few points, and on more points and in its callers where that shows nothing;
 last, it may not lose what WGSL guarantees of the function (conformance.guarantees). Functions that read maps
-are held to their references on maps of conformance.textures instead.
+are held to their references on maps of conformance.textures instead, those that no public function reaches to
+the formulas of conformance.check.parts.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from codegen.intervals import permitted
 from codegen.ir.nodes import callees
 from codegen.ir.verify import MalformedIRError
 from codegen.library import Library, default_root, load_library
-from conformance.check import engine
+from conformance.check import engine, parts
 from conformance.check.engine import Draw
 from conformance.execute.further import codomains, leaves_codomain, with_further_bounds
 from conformance.mutation.isolated import KILLED, REFUSED, SURVIVED
@@ -148,6 +149,8 @@ def judge(group: Group, subject: Subject, mutant: Mutant) -> str:
             library.function(name)
     except (SourceError, UserError, MalformedIRError):
         return REFUSED
+    if any(not parts.passes(library, name) for name in changed if name in parts.PARTS):
+        return KILLED
     users = list(dict.fromkeys(user for name in changed for user in public_users(name, 50)))
     own = [name for name in users if name in changed] or users[:1]
     others = [name for name in users if name not in own]
