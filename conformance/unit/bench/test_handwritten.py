@@ -8,7 +8,7 @@ import pytest
 from codegen.library import load_library
 from codegen.scene.description.document import read_scene
 from codegen.scene.general import general_function
-from codegen.scene.proof.errors import Reference
+from codegen.scene.proof.errors import reference_values
 from codegen.scene.proof.points import draw
 from conformance.bench.handwritten import beside
 from conformance.unit.support.drivers import need
@@ -27,7 +27,7 @@ def test_the_hand_written_functions_are_the_same_model(target: str) -> None:
     general = general_function(scene)
     extended = library.with_functions([general.function])
     points = draw(scene, general, 2000)
-    exact = Reference.of(extended, general.function.name, points).exact
+    exact, _ = reference_values(extended, general.function.name, points)
     named = extended.with_functions([beside.stand_in(general.function, beside.BY_HAND)])
     found = beside.values(named, beside.BY_HAND, runtime, target, points.inputs, beside.prefixed(target))
     ordinary = ~points.hard
