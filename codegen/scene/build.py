@@ -32,7 +32,7 @@ from codegen.scene.proof.points import SEED, Points, draw
 from codegen.scene.proof.proof import Proof, Results, prove
 from codegen.scene.reduction.knowledge import Given, Knowledge
 from codegen.scene.reduction.prices import Prices
-from codegen.scene.reduction.reduce import Reduced, Reducer
+from codegen.scene.reduction.reduce import Chosen, Reduced, Reducer
 from codegen.scene.report import spirv, stopwatch, text
 from codegen.scene.report.stopwatch import Speed
 
@@ -135,26 +135,34 @@ class Builder:
         reducer = Reducer.of(library, self.scene, general, points, forked=not self.executed)
         ahead = beside(lambda: self.ahead(library, general, list(constant), pixels), forked=not self.executed)
         self.check_budget(reducer.reference.rounding)
-        first, *others = self.scene.dialects
-        self.say(f"searching for {first}")
-        reduced = reducer.reduced(Prices.of(library, first), self.scene.budget)
         if not reducer.exact().function.parameters:
             raise UserError(
                 f"{self.scene.path}: nothing varies: the scene is one colour and needs no function"
             )
-        # The first search leaves much that the others take over, and then each goes its own way.
-        following = [
-            beside(partial(self.following, library, reducer, target), forked=not self.executed)
+        first, *others = self.scene.dialects
+        self.say(f"searching for {first}")
+        prices, chosen = Prices.of(library, first), None
+        if self.scene.budget > 0.0:
+            chosen = reducer.chosen(prices, self.scene.budget)
+        forked = chosen is not None and not self.executed
+        following = {
+            target: beside(partial(self.apart, library, reducer, target, chosen), forked=forked)
             for target in others
-        ]
+        }
+        reduced = reducer.reduced(prices, self.scene.budget, chosen)
+        left = beside(partial(self.remaining, library, reduced), forked=not self.executed)
         proven, exact, single, error = ahead()
         if single is not None:
             self.results["float32", general.function.body] = single
         with self.compilers:
             results = [self.proven(library, general, reducer, reduced, proven, exact)]
+            for target, searched in following.items():
+                self.say(f"searching for {target}")
+                other = searched() or reducer.reduced(Prices.of(library, target), self.scene.budget)
+                results.append(self.proven(library, general, reducer, other, proven, exact))
             self.say("probing what is left")
-            remaining = self.remaining(library, results[0].reduced)
-            results += [self.proven(library, general, reducer, f(), proven, exact) for f in following]
+            final = results[0].reduced
+            remaining = left() if final is reduced else self.remaining(library, final)
         for result in results:
             if result.target == "glsl":
                 result.spirv = {key: count.result() for key, count in self.counting.items()}
@@ -175,9 +183,14 @@ class Builder:
         """Whether a driver is open."""
         return any(not isinstance(runtime, str) for runtime in self.runtimes.values())
 
-    def following(self, library: Library, reducer: Reducer, target: str) -> Reduced:
-        """The result of the search for one more target."""
-        return reducer.reduced(Prices.of(library, target), self.scene.budget)
+    def apart(self, library: Library, reducer: Reducer, target: str, first: Chosen | None) -> Reduced | None:
+        """The result of the search for one more target; None where it takes what the first one takes, since
+        most that is left to do is then done there."""
+        if first is None:
+            return None
+        prices = Prices.of(library, target)
+        chosen = reducer.chosen(prices, self.scene.budget)
+        return None if chosen.same_as(first) else reducer.reduced(prices, self.scene.budget, chosen)
 
     def ahead(
         self, library: Library, general: General, lights: list[ConstantLight], pixels: Floats | None

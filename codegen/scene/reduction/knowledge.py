@@ -6,8 +6,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from codegen.ir.domains import Interval
-from codegen.ir.types import BOOL, F32, Array, Vector
+from codegen.ir import nodes as ir
+from codegen.ir.domains import Interval, Unit
+from codegen.ir.types import BOOL, F32, VEC3, Array, Vector
 from codegen.library import Library
 from codegen.passes.specialise import Specialised, specialise
 from codegen.scene.description.document import Scene
@@ -47,6 +48,12 @@ class Knowledge:
             unroll=UNROLLED,
         )
         return replace(made, function=plainly_named(made.function))
+
+    def facts_of(self, function: ir.Function) -> list[tuple[str, float, float]]:
+        """Facts over the parameters that a function has left, and the lengths of its products."""
+        names = {p.name for p in function.parameters}
+        kept = [fact for fact in self.facts if all(name in names for name in _named(fact[0]))]
+        return kept + _lengths(function)
 
 
 def knowledge(scene: Scene, general: General) -> Knowledge:
@@ -127,3 +134,20 @@ def model_ranges(scene: Scene, general: General) -> Known:
         elif isinstance(slot.domain, Interval):
             found[path] = slot.domain.low, slot.domain.high
     return found
+
+
+def _lengths(function: ir.Function) -> list[tuple[str, float, float]]:
+    """That a cross product of two unit parameters is no longer than 1."""
+    units = {p.name for p in function.parameters if isinstance(p.domain, Unit) and p.type == VEC3}
+    found = {}
+    for e in ir.expressions(function.body):
+        if isinstance(e, ir.Builtin) and e.op == "cross":
+            pair = [a.name for a in e.args if isinstance(a, ir.Var) and a.name in units]
+            if len(pair) == 2:
+                product = f"cross({pair[0]}, {pair[1]})"
+                found[f"dot({product}, {product})"] = 0.0, 1.0
+    return [(expression, low, high) for expression, (low, high) in found.items()]
+
+
+def _named(expression: str) -> list[str]:
+    return [part.strip() for part in expression.removeprefix("dot(").removesuffix(")").split(",")]

@@ -10,11 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import NamedTuple
 
 from codegen.evaluate.memory import Memory
 from codegen.ir import nodes as ir
-from codegen.ir.domains import Unit
-from codegen.ir.types import VEC3
 from codegen.library import Library
 from codegen.passes.analysis.operations import operations
 from codegen.passes.rules.powers import LARGEST, ROWS
@@ -81,6 +80,18 @@ class Reduced:
     choices: dict[Path, str] = field(default_factory=dict)
 
 
+class Chosen(NamedTuple):
+    """Where a search stands before it changes forms: powers, variants, changes of powers."""
+
+    powers: int
+    found: Found
+    changes: tuple[Change, ...]
+
+    def same_as(self, other: Chosen) -> bool:
+        """Whether the same functions are called."""
+        return self.powers == other.powers and self.found.choices == other.found.choices
+
+
 @dataclass
 class Reducer:
     """Reduces one scene; what does not depend on the target is done once."""
@@ -131,16 +142,25 @@ class Reducer:
             self._made[key] = self.knowledge.specialised(library, name, self.name, powers)
         return self._made[key]
 
-    def reduced(self, prices: Prices, budget: float) -> Reduced:
-        """The cheapest function within the budget that the search finds for a target."""
+    def chosen(self, prices: Prices, budget: float) -> Chosen:
+        """The powers and variants for a target."""
+        changes: list[Change] = []
+        powers = self.powers(self.exact(), budget, changes)
+        found = self.search.find(prices, budget, SETTLED if powers else frozenset())
+        return Chosen(powers, found, tuple(changes))
+
+    def reduced(self, prices: Prices, budget: float, chosen: Chosen | None = None) -> Reduced:
+        """The cheapest function within the budget that the search finds for a target.
+
+        chosen  its powers and variants, where they are known already
+        """
         exact = self.exact()
         changes: list[Change] = []
         current, choices = exact, {}
         if budget > 0.0:
-            powers = self.powers(exact, budget, changes)
-            found = self.search.find(prices, budget, SETTLED if powers else frozenset())
+            powers, found, made = chosen or self.chosen(prices, budget)
             choices = self.needed(found.choices, powers)
-            changes += _variants(found, choices, prices)
+            changes += [*made, *_variants(found, choices, prices)]
             current = self.specialised(choices, powers)
             current = self.loosened(current, prices, budget, changes)
             current = self.dropped(current, prices, budget, changes)
@@ -319,31 +339,12 @@ class Reducer:
 
     def _clean(self, function: ir.Function) -> Specialised:
         library = self.library.with_functions([function])
-        names = {p.name for p in function.parameters}
-        facts = [f for f in self.knowledge.facts if all(n in names for n in _named(f[0]))]
-        facts += _lengths(function)
+        facts = self.knowledge.facts_of(function)
         return specialise(library, function.name, facts=facts, new_name=self.name, unroll=UNROLLED)
 
 
 def _without(choices: dict[Path, str], path: Path) -> dict[Path, str]:
     return {p: name for p, name in choices.items() if p != path}
-
-
-def _lengths(function: ir.Function) -> list[tuple[str, float, float]]:
-    """That a cross product of two unit parameters is no longer than 1."""
-    units = {p.name for p in function.parameters if isinstance(p.domain, Unit) and p.type == VEC3}
-    found = {}
-    for e in ir.expressions(function.body):
-        if isinstance(e, ir.Builtin) and e.op == "cross":
-            pair = [a.name for a in e.args if isinstance(a, ir.Var) and a.name in units]
-            if len(pair) == 2:
-                product = f"cross({pair[0]}, {pair[1]})"
-                found[f"dot({product}, {product})"] = 0.0, 1.0
-    return [(expression, low, high) for expression, (low, high) in found.items()]
-
-
-def _named(expression: str) -> list[str]:
-    return [part.strip() for part in expression.removeprefix("dot(").removesuffix(")").split(",")]
 
 
 def _variants(found: Found, choices: dict[Path, str], prices: Prices) -> Sequence[Change]:
