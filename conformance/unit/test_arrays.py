@@ -69,6 +69,17 @@ def test_sum_over_an_array_and_its_intervals() -> None:
         assert allowed.contains(single).all()
 
 
+def test_one_array_may_stand_for_all_lanes() -> None:
+    x = inputs()
+    one = {"l": np.asarray(x["l"])[0], "light": np.asarray(x["light"])[0]}
+    assert one["l"].shape == (LIGHTS, 3)
+    lanes = {name: np.repeat(value[None], LANES, axis=0) for name, value in one.items()}
+    every, alone = (evaluate(EXTENDED, "lambert_sum", {**x, **given}) for given in (lanes, one))
+    np.testing.assert_array_equal(every, alone)
+    with pytest.raises(UserError, match=rf"l has shape .*, but .* needs \(N, {LIGHTS}, 3\)$"):
+        evaluate(EXTENDED, "lambert_sum", {**x, "l": one["l"][:, :2]})
+
+
 def test_elements_are_drawn_from_their_domain() -> None:
     drawn = draw(lambert_sum(), "uniform", LANES, 7)
     assert list(drawn["l"]) == [str(k) for k in range(LIGHTS)]

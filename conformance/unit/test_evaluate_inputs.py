@@ -8,6 +8,7 @@ Plan.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -53,3 +54,22 @@ def test_multiprecision_takes_inputs_as_they_are(tmp_path: Path) -> None:
         assert all(isinstance(value, mpmath.mpf) for value in found)
         assert [value * 3 - mpmath.mpf(float(given)) for value, given in zip(found, x, strict=True)] == [0, 0]
         assert found[1] != mpmath.mpf(1.0 / 3.0)
+
+
+@pytest.mark.parametrize("text", ["x * x * x", "x - x * x", "x * v.y * v.z", "min(x, v.x) * x * x"])
+def test_multiprecision_rounds_nothing_of_inputs_alone(text: str, tmp_path: Path) -> None:
+    """Products of three float32 numbers leave a double's 53 bits."""
+    library = library_of(tmp_path, f"def probe(x: X, v: V) -> f32:\n    return {text}\n")
+    x, v = np.array([0.1, 1.0 / 3.0], np.float32), np.array([[0.7, 0.3, 1.1]] * 2, np.float32)
+    with mpmath.workdps(60):
+        found: Any = evaluate(library, "probe", {"x": x, "v": v}, "mpmath")
+        lanes = [Fraction(float(value)) for value in x]
+        parts = [Fraction(float(value)) for value in v[0]]
+        wanted = {
+            "x * x * x": [a * a * a for a in lanes],
+            "x - x * x": [a - a * a for a in lanes],
+            "x * v.y * v.z": [a * parts[1] * parts[2] for a in lanes],
+            "min(x, v.x) * x * x": [min(a, parts[0]) * a * a for a in lanes],
+        }[text]
+        for got, exact in zip(found, wanted, strict=True):
+            assert got * exact.denominator == exact.numerator
