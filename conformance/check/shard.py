@@ -19,7 +19,7 @@ class Shard:
 
     @staticmethod
     def parse(text: str) -> Shard:
-        """2/3 as a shard; raises UserError for anything else, and for more parts than anybody has machines."""
+        """2/3 as a shard; raises UserError for anything else, and for a thousand parts or more."""
         match = re.fullmatch(r"([0-9]{1,3})/([0-9]{1,3})", text)
         if match is None or not 1 <= int(match[1]) <= int(match[2]):
             raise UserError(f'"{text}" is no shard; write 1/3, 2/3 or 3/3, of at most 999')

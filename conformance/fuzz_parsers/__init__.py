@@ -1,6 +1,6 @@
 """Fuzzing of everything that reads a file which a person hands over.
 
-parsers.py    what is fuzzed: readers by name, made in descriptions.py, outcomes.py, measured.py, shapes.py and
+parsers.py    what is fuzzed: readers by name, made in descriptions.py, outcomes.py, measured.py, shapes.py,
               messages.py
 parser.py     a reader and the files to start from
 readers.py    the modules that read, followed by coverage, and a hash of them
