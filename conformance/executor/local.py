@@ -43,7 +43,7 @@ def leave_interrupts_to_the_parent() -> None:
 class Processes:
     """A pool of processes; each opens its own devices. A process that dies loses nothing.
 
-    Interrupted, it ends when its workers are done with the jobs that they have.
+    Interrupted, it ends when its workers are done with the jobs that they have; interrupted again, at once.
     """
 
     def __init__(self, workers: int = 2) -> None:
@@ -96,5 +96,11 @@ class Processes:
                     except BrokenProcessPool:
                         died.append(job)
         finally:
-            pool.shutdown(cancel_futures=True)
+            try:
+                pool.shutdown(cancel_futures=True)
+            except KeyboardInterrupt:
+                # Workers that nobody tells to end would be waited for at exit, for ever.
+                for process in multiprocessing.active_children():
+                    process.kill()
+                raise
         return died

@@ -65,8 +65,12 @@ def test_a_process_that_dies_loses_nothing(tmp_path: Path) -> None:
     assert all(not error for _, error in answers.values())
 
 
-def test_an_interrupted_run_ends(tmp_path: Path) -> None:
-    """Ctrl-C reaches every process of the terminal; the workers end all the same, and so does the parent."""
+@pytest.mark.parametrize("times", [1, 2])
+def test_an_interrupted_run_ends(times: int, tmp_path: Path) -> None:
+    """Ctrl-C reaches every process of the terminal; the workers end all the same, and so does the parent.
+
+    A second one, while the workers finish what they have, ends them at once: nobody waits for the other.
+    """
     begun = tmp_path / "begun"
     program = (
         "import pathlib\n"
@@ -86,13 +90,15 @@ def test_an_interrupted_run_ends(tmp_path: Path) -> None:
             while not begun.exists():
                 assert run.poll() is None
                 time.sleep(0.05)
-            os.killpg(run.pid, signal.SIGINT)
-            _, errors = run.communicate(timeout=60)
+            for _ in range(times):
+                os.killpg(run.pid, signal.SIGINT)
+                time.sleep(0.05)
+            _, errors = run.communicate(timeout=30)
         finally:
             with suppress(ProcessLookupError):
                 os.killpg(run.pid, signal.SIGKILL)
     assert run.returncode not in (0, None)
-    assert errors.count("KeyboardInterrupt") == 1, errors
+    assert errors.count("KeyboardInterrupt") == times, errors
 
 
 class BreaksWhenIdle(Pool):
