@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -29,13 +32,14 @@ def read_pixels(path: Path, *, linear: bool = False) -> Pixels:
     oiio = _library()
     if not path.is_file():
         raise UserError(f'cannot read "{path}": {"it is a folder" if path.is_dir() else "no such file"}')
-    source = oiio.ImageInput.open(str(path))
-    if source is None:
-        raise UserError(f'cannot read "{path}": {_reason(oiio.geterror())}')
-    spec = source.spec()
-    data = None if spec.deep else source.read_image(oiio.FLOAT)
-    message = source.geterror()
-    source.close()
+    with _silent():
+        source = oiio.ImageInput.open(str(path))
+        if source is None:
+            raise UserError(f'cannot read "{path}": {_reason(_message(oiio))}')
+        spec = source.spec()
+        data = None if spec.deep else source.read_image(oiio.FLOAT)
+        message = _message(source)
+        source.close()
     if spec.deep:
         raise UserError(f'cannot read "{path}": it is a deep image, which has no single value per pixel')
     if data is None or message:
@@ -45,6 +49,28 @@ def read_pixels(path: Path, *, linear: bool = False) -> Pixels:
     if linear and str(spec.format) in INTEGER_FORMATS:
         colours = _decoded(colours)
     return np.ascontiguousarray(colours)
+
+
+def _message(told: Any) -> str:
+    """What the library, or an image of it, has to complain of."""
+    try:
+        return str(told.geterror())
+    except UnicodeDecodeError as e:  # it quotes the file
+        return bytes(e.object).decode("utf-8", "replace")
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """Without what libraries of C print on their own: the sentence says it."""
+    sys.stderr.flush()
+    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
 
 
 def _library() -> Any:

@@ -68,7 +68,7 @@ class Sandbox:
         else:
             return
         for path in paths:
-            if isinstance(path, str | bytes | os.PathLike):
+            if isinstance(path, str | bytes | os.PathLike) and path != os.devnull:
                 cls._refuse_outside(event, os.fsdecode(path))
 
     @classmethod

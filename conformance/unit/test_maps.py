@@ -14,6 +14,7 @@ from codegen.evaluate import evaluate
 from codegen.library import load_library
 from codegen.maps import latlong, mipmap, octahedral, paraboloid, prefilter
 from codegen.maps.image import exr, read_pixels
+from codegen.maps.image import png as as_png
 from codegen.maps.radiance import read_radiance
 
 DATA = Path(__file__).parents[2] / "examples" / "data"
@@ -71,6 +72,26 @@ def test_integers_are_decoded_only_where_light_is_wanted(tmp_path: Path) -> None
     assert read_pixels(path)[0, 0, 0] == np.float32(188 / 255)
     linear = ((188 / 255 + 0.055) / 1.055) ** 2.4
     assert abs(read_pixels(path, linear=True)[0, 0, 1] - linear) <= FLOAT32
+
+
+def test_a_header_that_is_no_text_gets_a_sentence(tmp_path: Path) -> None:
+    """OpenImageIO tells of it in the bytes of the file, which are no UTF-8."""
+    whole = exr(np.ones((2, 2, 3)))
+    broken = whole.replace(b"screenWindowWidth\0float", b"screenWindowWidth\0\x93\xffoat")
+    assert broken != whole
+    (tmp_path / "a.exr").write_bytes(broken)
+    with pytest.raises(UserError, match="cannot read"):
+        read_pixels(tmp_path / "a.exr")
+
+
+def test_what_a_library_prints_of_an_image_is_not_shown(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    whole = as_png(np.ones((8, 8, 3)))
+    (tmp_path / "a.png").write_bytes(whole[:40] + b"\xff" * 8 + whole[48:])
+    with pytest.raises(UserError, match="cannot read"):
+        read_pixels(tmp_path / "a.png")
+    assert capfd.readouterr().err == ""
 
 
 def test_what_is_no_image_gets_one_sentence(tmp_path: Path) -> None:
