@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,12 @@ import numpy as np
 from codegen.factors.maps import read_factor_maps
 from codegen.factors.samples import read_samples
 from codegen.factors.waterloo import read_waterloo
-from codegen.maps.image import exr, png
+from codegen.maps.image import exr, png, read_pixels
 from codegen.tables.stored import read_angle_table
 from conformance.fuzz_parsers.parser import Parser, json_parser, npz_parser
+
+_DATE = re.compile(rb"\d{4}:\d\d:\d\d \d\d:\d\d:\d\d")
+"""When an image was written: replaced, so that bytes give the same file on another day."""
 
 
 def waterloo() -> Parser:
@@ -68,6 +72,15 @@ def table() -> Parser:
 
     axes = [{"name": name, "warp": "angle", "low": -1.0, "high": 1.0} for name in ("l", "v")]
     return json_parser("table.json", read, [{"x": axes[0], "y": axes[1]}])
+
+
+def image() -> Parser:
+    """A picture or map: OpenEXR, Radiance, PNG and PFM, told apart by their first bytes."""
+    pixels = np.linspace(0.0, 1.0, 4 * 8 * 3, dtype=np.float32).reshape(4, 8, 3)
+    dated = _DATE.sub(b"2000:01:01 00:00:00", exr(pixels))
+    radiance = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n" + bytes(range(100, 164))
+    portable = b"PF\n8 4\n-1.0\n" + pixels.tobytes()
+    return Parser("own.image", read_pixels, (dated, png(pixels), radiance, portable))
 
 
 def _grey_exr() -> bytes:

@@ -23,6 +23,7 @@ PARSERS: dict[str, Callable[[], Parser]] = {
         measured.samples_npz,
         measured.factors,
         measured.table,
+        measured.image,
         shapes.mesh,
         shapes.mesh_ply,
         shapes.strands,

@@ -38,6 +38,7 @@ MODULES: dict[str, tuple[str, ...]] = {
     "samples_npz": ("codegen.factors.samples", *SHARED),
     "factors": ("codegen.factors.maps", "codegen.maps.image", *SHARED),
     "table": ("codegen.tables.stored", "codegen.maps.image", *SHARED),
+    "image": ("codegen.maps.image", *SHARED),
     "mesh": ("codegen.fur.surface", *SHARED),
     "mesh_ply": ("codegen.fur.surface", *SHARED),
     "strands": ("codegen.strands.tfx", *SHARED),
