@@ -87,6 +87,22 @@ def test_truth_of_a_comparison(op: str, kind: str, copies: int) -> None:
     np.testing.assert_array_equal(a.low, column([p[0][0] for p in PAIRS], copies))
 
 
+@pytest.mark.parametrize("copies", (1, 40))
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("op", COMPARISONS)
+def test_decided_comparison_counts_as_a_fork_that_no_lane_has(op: str, kind: str, copies: int) -> None:
+    """Forks have the same number however many lanes are evaluated, and in whatever way."""
+    true, false = pairs_of(op, KINDS[kind])
+    decided = [k for k, both in enumerate(zip(true, false, strict=True)) if not all(both)]
+    here = context(len(decided) * copies)
+    a, b = (operand([PAIRS[k][e] for k in decided], copies, KINDS[kind]) for e in (0, 1))
+    found = operations.binary(here, op, a, b)
+    assert isinstance(found, Truth)
+    np.testing.assert_array_equal(found.true, column([true[k] for k in decided], copies, np.bool_))
+    assert here.forks == 1
+    assert (here.first_fork == -1).all()
+
+
 @pytest.mark.parametrize("copies", COPIES)
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("op", COMPARISONS)
@@ -132,18 +148,19 @@ def test_a_value_compared_with_itself(op: str) -> None:
     assert (found.false | ~points | holds).all()
 
 
+@pytest.mark.parametrize("copies", COPIES)
 @pytest.mark.parametrize("which", [0, 1])
 @pytest.mark.parametrize("op", COMPARISONS)
-def test_what_may_be_anything_tells_nothing_and_forks_nothing(op: str, which: int) -> None:
-    lanes = len(PAIRS)
+def test_what_may_be_anything_tells_nothing_and_forks_nothing(op: str, which: int, copies: int) -> None:
+    lanes = len(PAIRS) * copies
     cause = (np.arange(lanes) % 2).astype(np.int16)
     codes = [cause if k == which else None for k in (0, 1)]
     for ways in (None, np.ones(lanes, np.int64)):
         here = context(lanes, ways)
-        a, b = (operand([p[k] for p in PAIRS], 1, False, codes[k]) for k in (0, 1))
+        a, b = (operand([p[k] for p in PAIRS], copies, False, codes[k]) for k in (0, 1))
         found = operations.binary(here, op, a, b)
         assert isinstance(found, Truth)
-        true, false = (np.array(x) for x in pairs_of(op, False))
+        true, false = (column(x, copies, np.bool_) for x in pairs_of(op, False))
         free = cause > 0
         assert (found.true[free] & found.false[free]).all()
         np.testing.assert_array_equal(found.true[~free], true[~free])
@@ -151,8 +168,8 @@ def test_what_may_be_anything_tells_nothing_and_forks_nothing(op: str, which: in
             np.testing.assert_array_equal(found.false[~free], false[~free])
             np.testing.assert_array_equal(here.first_fork, np.where(true & false & ~free, 0, -1))
         for x, boxes in ((a, [p[0] for p in PAIRS]), (b, [p[1] for p in PAIRS])):
-            np.testing.assert_array_equal(x.low[free], np.array([box[0] for box in boxes])[free])
-            np.testing.assert_array_equal(x.high[free], np.array([box[1] for box in boxes])[free])
+            np.testing.assert_array_equal(x.low[free], column([box[0] for box in boxes], copies)[free])
+            np.testing.assert_array_equal(x.high[free], column([box[1] for box in boxes], copies)[free])
 
 
 QUARTERS = [(a / 4.0, b / 4.0) for a in range(-11, 12) for b in range(a, min(a + 14, 12))]
@@ -226,6 +243,11 @@ def test_conversion_beyond_the_type_may_give_anything(is_signed: bool) -> None:
     assert (found.high[3:] == limits[1]).all()
     np.testing.assert_array_equal(found.low[:3], np.trunc([r[0] for r in rows[:3]]))
     np.testing.assert_array_equal(found.high[:3], np.trunc([r[1] for r in rows[:3]]))
+    both = Range(x.low, x.high, np.array([0, 0, 0, 0, 7], np.int16))
+    again = logic.to_integer(context(len(rows)), both, is_signed)
+    assert again.cause is not None
+    np.testing.assert_array_equal(again.cause > 0, [False, False, False, True, True])
+    assert again.cause[4] == 7
     inherited = logic.to_integer(
         context(2), Range(np.zeros(2), np.ones(2), np.array([0, 3], np.int16)), is_signed
     )

@@ -88,6 +88,7 @@ ANYTHING = {
     "sin(a)": (3.2, "probe: sin of x: x may lie outside the promised interval"),
     "a * a": (1e20, "probe: *: the result may overflow"),
     "f32(i32(a))": (3e9, "probe: i32() of x: outside the integers of the type"),
+    "2.0 / a": (2e38, "probe: / of y: outside the promised magnitudes"),
     "min(1.0 / a, 1.0)": (0.0, "probe: / of y: the divisor may be 0"),
 }
 
