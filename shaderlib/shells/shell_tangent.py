@@ -16,7 +16,7 @@ def shell_tangent(n: Direction, height: UnitInterval, comb: Bend, force: Bend) -
     comb        direction in which the coat is combed, times its strength
     force       bending force per stiffness
     returns     unit vector along the curve on which shell_offset moves as the height grows
-    degenerate  n + height comb + height^2 force = 0: the direction in which it changes, comb + 2 height force;
+    degenerate  n + height comb + height^2 force = 0: the way that changes, comb + 2 height force;
                 the curve stops there: n
     form        with a = n + height comb + height^2 force and u = a / |a|, the curve is height u and its
                 derivative u + height (a' - u (u.a')) / |a|
