@@ -1,7 +1,7 @@
 """Float32 numbers inside float64 arrays: neighbours, spacing, and the error that float64 itself makes.
 
 Every function takes and gives float64 arrays. The float32 grid is the one of normal numbers; what happens
-below 2^-126 is decided in codegen.intervals.settle.
+below 2^-126 is decided in codegen.intervals.arithmetic.settle.
 """
 
 from __future__ import annotations
