@@ -175,7 +175,7 @@ def test_cross_product_that_is_written_out_is_one() -> None:
     lengths = Lengths(values, ranges.bounds)
     rows = ((1, 2), (2, 0), (0, 1))
     u, t, v = given["u"], given["t"], given["v"]
-    assert lengths.of(cross_parts(values, u, t, rows))[1] == pytest.approx(1.0, abs=1e-4)
+    assert lengths.of(cross_parts(values, u, t, rows))[1] == pytest.approx(1.0, abs=tolerance("length_bound"))
     for order in (((1, 2), (0, 2), (0, 1)), ((1, 2), (1, 2), (0, 1)), ((1, 2), (2, 0), (0, 2))):
         assert math.isinf(lengths.of(cross_parts(values, u, t, order))[1])
     assert (
@@ -191,16 +191,18 @@ def test_lengths_of_constants_and_arrays() -> None:
     values, ranges, given = known()
     lengths = Lengths(values, ranges.bounds)
     three_four = values.build(ir.Construct(VEC3, tuple(values.number(x, F32) for x in (3.0, 4.0, 0.0))))
-    assert lengths.of(three_four) == pytest.approx((5.0, 5.0), abs=1e-4)
-    assert lengths.of(values.number(2.0, VEC3)) == pytest.approx((math.sqrt(12.0),) * 2, abs=1e-4)
+    assert lengths.of(three_four) == pytest.approx((5.0, 5.0), abs=tolerance("length_bound"))
+    assert lengths.of(values.number(2.0, VEC3)) == pytest.approx(
+        (math.sqrt(12.0),) * 2, abs=tolerance("length_bound")
+    )
     u, w = given["u"], given["w"]
     three = made(values, given, "u * 3.0")
     array = values.build(ir.Construct(array_of(VEC3, 3), (u, three, w)))
     element = values.build(ir.Index(VEC3, array, values.intern(ir.Var(I32, "k"))))
-    assert lengths.of(element) == pytest.approx((0.0, 3.0), abs=1e-4)
+    assert lengths.of(element) == pytest.approx((0.0, 3.0), abs=tolerance("length_bound"))
     units = values.build(ir.Construct(array_of(VEC3, 2), (u, given["t"])))
     element = values.build(ir.Index(VEC3, units, values.intern(ir.Var(I32, "k"))))
-    assert lengths.of(element) == pytest.approx((1.0, 1.0), abs=1e-4)
+    assert lengths.of(element) == pytest.approx((1.0, 1.0), abs=tolerance("length_bound"))
     assert lengths.of(given["s"]) == (0.0, math.inf)
 
 

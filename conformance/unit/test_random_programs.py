@@ -36,6 +36,11 @@ TABLE = "wgsl"
 """Bounds every rounding either way."""
 
 
+all_parts = pytest.mark.parametrize(
+    "part", [0, *(pytest.param(part, marks=pytest.mark.nightly) for part in range(1, PARTS))]
+)
+
+
 def part_of(part: int) -> range:
     return range(part * COUNT // PARTS, (part + 1) * COUNT // PARTS)
 
@@ -47,7 +52,7 @@ def library_of_programs(folder: Path, part: int) -> tuple[Library, dict[str, dic
     return library, {c.entry: draw_inputs(c, library.function(c.entry).parameters, LANES) for c in cases}
 
 
-@pytest.mark.parametrize("part", range(PARTS))
+@all_parts
 def test_programs_mean_what_they_say(part: int) -> None:
     tally = Tally()
     run_cases(part_of(part), SEED, [], tally)
@@ -56,7 +61,7 @@ def test_programs_mean_what_they_say(part: int) -> None:
     assert tally.programs == len(part_of(part))
 
 
-@pytest.mark.parametrize("part", range(PARTS))
+@all_parts
 def test_specialised_programs_compute_what_they_did(part: int, tmp_path: Path) -> None:
     library, inputs = library_of_programs(tmp_path, part)
     tried = 0

@@ -148,12 +148,12 @@ def code(name: str) -> Iterator[str]:
             yield token.content
 
 
-def typed(name: str) -> Iterator[list[str]]:
+@cache
+def typed(name: str) -> tuple[list[str], ...]:
     """The words of each line that can be typed, up to a second command."""
-    for block in code(name):
-        for line in block.replace("\\\n", " ").splitlines():
-            command = re.split(r" (?:\|\||&&|;) ", line)[0]
-            yield re.sub(r"[][|]|(?<=\w)\.\.\.", " ", command).split()
+    lines = (line for block in code(name) for line in block.replace("\\\n", " ").splitlines())
+    commands = (re.split(r" (?:\|\||&&|;) ", line)[0] for line in lines)
+    return tuple(re.sub(r"[][|]|(?<=\w)\.\.\.", " ", command).split() for command in commands)
 
 
 def options(command: click.Command) -> set[str]:

@@ -85,6 +85,7 @@ def test_files_are_those_of_emit_and_compile(d: Dialect) -> None:
     validate(text, d)
 
 
+@pytest.mark.nightly
 @all_dialects
 def test_files_of_one_function_each_compile_in_any_order(d: Dialect) -> None:
     options = replace(HALF, dialects=(key(d),), per_function=True)

@@ -20,7 +20,13 @@ from targets.packages import find_tool
 FUNCTION = "sin_angle"
 
 
-@pytest.mark.parametrize("shell", SHELLS, ids=lambda shell: shell.name)
+DEFAULT = {shell.name for shell in SHELLS[:2]}
+
+
+@pytest.mark.parametrize(
+    "shell",
+    [pytest.param(s, id=s.name, marks=() if s.name in DEFAULT else pytest.mark.nightly) for s in SHELLS],
+)
 def test_every_shell_compiles_with_an_include(shell: Shell) -> None:
     glslang = find_tool("glslangValidator", "glslang")
     if glslang is None:
