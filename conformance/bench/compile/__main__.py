@@ -7,6 +7,7 @@ The functions with the longest includes are measured in every shell, forwards an
 from __future__ import annotations
 
 import datetime
+import os
 import sys
 
 import click
@@ -48,8 +49,9 @@ def main(functions: tuple[str, ...], count: int, rounds: int, keep: bool) -> Non
         "date": datetime.date.today().isoformat(),
         "method": (
             f"Processor time of glslangValidator, medians (and least) of {rounds} rounds; the {len(names)} "
-            f"functions of {len(library.documented)} with the longest includes; {machine['cpu']}, two "
-            "hyperthreads that other programs kept busy, which lengthens processor times too"
+            f"functions of {len(library.documented)} with the longest includes; {machine['cpu']}, load "
+            f"average {os.getloadavg()[0]:.1f} at the end, {os.cpu_count()} processors; other programs "
+            "lengthen processor times too"
         ),
     }
     if keep:
