@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from codegen.files import write_text
+from conformance.marked import with_part
 
 FOLDER = Path(__file__).parent
 RESULTS = FOLDER / "results.json"
@@ -73,9 +74,8 @@ def keep(name: str, record: Record, order: list[str]) -> None:
     found = {**read(), name: record}
     data = {key: asdict(found[key]) for key in order if key in found}
     write_text(RESULTS, json.dumps(data, indent=1) + "\n")
-    before, _, rest = README.read_text(encoding="utf-8").partition(BEGIN)
-    after = rest.partition(END)[2]
-    write_text(README, f"{before}{BEGIN}\n\n{table(found)}\n\n{END}{after}")
+    page = README.read_text(encoding="utf-8")
+    write_text(README, with_part(page, BEGIN, END, f"\n\n{table(found)}\n\n"))
 
 
 def table(found: Mapping[str, Record]) -> str:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from scipy.stats import beta
 
+from codegen.files import write_text
+from conformance.marked import with_part
 from conformance.mutation.plan import groups
 from conformance.mutation.record import FILE_COLUMNS, Draw, read
 
@@ -90,6 +92,5 @@ def text(found: Mapping[str, Sequence[Draw]]) -> str:
 
 def write() -> None:
     """Replace the generated part of README.md."""
-    before, _, rest = README.read_text(encoding="utf-8").partition(BEGIN)
-    _, _, after = rest.partition(END)
-    README.write_text(f"{before}{BEGIN}\n\n{text(read())}\n\n{END}{after}", encoding="utf-8")
+    page = README.read_text(encoding="utf-8")
+    write_text(README, with_part(page, BEGIN, END, f"\n\n{text(read())}\n\n"))

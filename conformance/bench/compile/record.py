@@ -10,6 +10,7 @@ from typing import Any
 from codegen.files import write_text
 from conformance.bench.compile.shells import SHELLS, Shell
 from conformance.bench.compile.times import Taken, Times
+from conformance.marked import with_part
 
 FOLDER = Path(__file__).parent
 RESULTS, README = FOLDER / "results.json", FOLDER / "README.md"
@@ -50,9 +51,8 @@ def _rounded(taken: Taken) -> dict[str, float]:
 def keep(data: Mapping[str, Any]) -> None:
     """Write the data and the table."""
     write_text(RESULTS, json.dumps(data, indent=1) + "\n")
-    before, _, rest = README.read_text(encoding="utf-8").partition(BEGIN)
-    after = rest.partition(END)[2]
-    write_text(README, f"{before}{BEGIN}\n\n{table(data)}\n\n{END}{after}")
+    page = README.read_text(encoding="utf-8")
+    write_text(README, with_part(page, BEGIN, END, f"\n\n{table(data)}\n\n"))
 
 
 def table(data: Mapping[str, Any]) -> str:

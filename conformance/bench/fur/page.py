@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from codegen.files import write_text
+from conformance.marked import with_part
 from conformance.plots import BLUE, GREEN, INK, LINE, ORANGE, PURPLE, SOFT
 
 FOLDER = Path(__file__).parent
@@ -124,7 +125,5 @@ def update_readme(path: Path = README) -> None:
     """Put what is recorded in its places."""
     text = path.read_text(encoding="utf-8")
     for name, section in sections().items():
-        begin, end = BEGIN.format(name), END.format(name)
-        before, rest = text.split(begin)
-        text = f"{before}{begin}\n{section}\n{end}{rest.split(end)[1]}"
+        text = with_part(text, BEGIN.format(name), END.format(name), f"\n{section}\n")
     write_text(path, text)
