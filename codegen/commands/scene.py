@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,11 +11,12 @@ from typing import Any
 import click
 
 from codegen.backends import open_runtime
+from codegen.commands.progress import progress
 from codegen.errors import UserError
 from codegen.files import write_folder
 from codegen.library import Library, load_library
 from codegen.lines import linemap
-from codegen.scene.build import Builder, Outcome, Progress, TargetResult
+from codegen.scene.build import Builder, Outcome, TargetResult
 from codegen.scene.description.document import read_scene
 from codegen.scene.report.markdown import as_markdown, summary
 from codegen.scene.report.report import as_data, as_json
@@ -48,7 +48,7 @@ def command(scene_file: Path, output: Path, no_drivers: bool, no_timing: bool, m
     runtimes: dict[str, Any] = {}
     for target in scene.dialects:
         runtimes[target] = NO_DRIVERS if no_drivers else _runtime(target)
-    with _progress() as say, _rare_collection():
+    with progress("reading the scene") as say, _rare_collection():
         outcome = Builder(library, scene, runtimes, timed=not no_timing, say=say).build()
     data = as_data(outcome)
     files = {result.file: result.text for result in outcome.targets}
@@ -65,18 +65,6 @@ def line_map(library: Library, outcome: Outcome, result: TargetResult) -> str:
     """The line map of a target's file as JSON."""
     dialect, _, defined = included(library, outcome.scene, outcome.general, result.reduced)
     return linemap.as_json(linemap.map_of(dialect, result.text, defined))
-
-
-@contextmanager
-def _progress() -> Iterator[Progress]:
-    """A line that says what is being done, where a person may watch."""
-    if not sys.stderr.isatty():
-        yield lambda sentence: None
-        return
-    from rich.console import Console  # takes longer to load than to say anything
-
-    with Console(stderr=True).status("reading the scene") as status:
-        yield status.update
 
 
 @contextmanager

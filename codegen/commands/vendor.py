@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import click
-from rich.console import Console
 
 from codegen.backends import open_runtime
+from codegen.commands.progress import progress
 from codegen.emit.module import DEFAULT_PREFIX, HALF_PREFIX
 from codegen.errors import UserError
 from codegen.files import write_folder
@@ -103,9 +103,7 @@ def planned(library: Library, options: Options, folder: Path, *, drivers: bool) 
     """What would be written now."""
     if not options.scene:
         return plan_functions(library, options)
-    progress = Console(stderr=True)
-    with progress.status("reading the scene") as status:
-        say = status.update if progress.is_terminal else lambda sentence: None
+    with progress("reading the scene") as say:
         return plan_scene(library, options, folder, runtime if drivers else lambda target: NO_DRIVERS, say)
 
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import click
 import numpy as np
-from rich.console import Console
 
+from codegen.commands.progress import progress
 from codegen.commands.vendor import NO_DRIVERS, planned, runtime
 from codegen.errors import UserError
 from codegen.files import write_text
@@ -56,9 +56,7 @@ def command(folder: Path, json_file: Path | None, no_drivers: bool) -> int:
         _by_dialect(lock, vendored),
         _by_dialect(plan.lock, {n: t.encode() for n, t in plan.files.items()}),
     )
-    progress = Console(stderr=True)
-    with progress.status("comparing") as status:
-        say = status.update if progress.is_terminal else lambda sentence: None
+    with progress("comparing") as say:
         found = changes(lock, plan.lock, old, new, _execution(plan, not no_drivers, say).compare)
     finding = Finding(str(folder), lock.version, VERSION, states(folder, lock, plan.files), found)
     if json_file is not None:

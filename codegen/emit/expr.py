@@ -8,6 +8,7 @@ from codegen.emit.dialect import Dialect
 from codegen.emit.literal import literal
 from codegen.emit.precedence import CONDITION, LEFT, RIGHT, level
 from codegen.ir import nodes as ir
+from codegen.ir.content import is_constant
 from codegen.ir.types import F32, TEXTURE, Array, Struct, Type, Vector
 from codegen.ops import BUILTINS
 
@@ -15,24 +16,6 @@ _SPELLING = {"//": "/", "and": "&&", "or": "||", "not": "!", "negate": "-"}
 _PRIMARY = frozenset({"primary"})
 _TESTS = frozenset({"comparison", "and", "or"})
 _CONDITIONAL_PARTS = CONDITION | {"primary"}
-
-
-def is_constant(e: ir.Expr) -> bool:
-    """Whether an expression is made of literals alone, so that a compiler computes it."""
-    match e:
-        case ir.Const():
-            return True
-        case ir.Unary() | ir.Convert():
-            return is_constant(e.operand)
-        case ir.Binary():
-            return is_constant(e.left) and is_constant(e.right)
-        case ir.Builtin() | ir.Construct():
-            return all(map(is_constant, e.args))
-        case ir.Swizzle():
-            return is_constant(e.value)
-        case ir.Select():
-            return is_constant(e.condition) and is_constant(e.if_true) and is_constant(e.if_false)
-    return False
 
 
 class ExprPrinter:

@@ -19,6 +19,7 @@ import numpy as np
 from codegen.evaluate.arrays import Array, Value
 from codegen.evaluate.textures import as_map
 from codegen.ir import nodes as ir
+from codegen.ir.content import variables
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ def _over_elements(e: ir.Expr, index: str, inside: frozenset[str]) -> tuple[ir.E
 
 @functools.lru_cache(4096)
 def _names(e: ir.Expr) -> frozenset[str]:
-    return frozenset(x.name for x in ir.walk(e) if isinstance(x, ir.Var))
+    return frozenset(variables(e))
 
 
 def joined(values: list[Value]) -> Value:

@@ -16,6 +16,7 @@ import numpy as np
 
 from codegen.evaluate.arrays import Arithmetic, Value, convert_inputs
 from codegen.ir import nodes as ir
+from codegen.ir.content import variables
 
 MOST = 256 * 2**20
 """Bytes of values that are remembered; then all are forgotten."""
@@ -89,11 +90,6 @@ def _bytes(value: Value) -> int:
     if isinstance(value, np.ndarray):
         return value.nbytes
     return sum(map(_bytes, value.values())) if isinstance(value, dict) else 0
-
-
-def variables(e: ir.Expr) -> tuple[str, ...]:
-    """The names of an expression's variables, each once."""
-    return tuple(dict.fromkeys(x.name for x in ir.walk(e) if isinstance(x, ir.Var)))
 
 
 def outer_calls(e: ir.Expr) -> Iterator[ir.Call]:

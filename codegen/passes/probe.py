@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from codegen.ir import nodes as ir
+from codegen.ir.content import variables
 from codegen.library import Library
 from codegen.passes.analysis.operations import operations
 from codegen.passes.analysis.ranges import Ranges
@@ -39,11 +40,11 @@ class _Recalling(Inliner):
     """
 
     known: dict[tuple[int, ...], Value] = field(default_factory=dict)
-    names: dict[int, list[str]] = field(default_factory=dict)
+    names: dict[int, tuple[str, ...]] = field(default_factory=dict)
 
     def whole(self, e: ir.Expr, scope: Scope) -> Value:
         if id(e) not in self.names:
-            self.names[id(e)] = list(dict.fromkeys(x.name for x in ir.walk(e) if isinstance(x, ir.Var)))
+            self.names[id(e)] = variables(e)
         key = (id(e), *[id(scope[name]) for name in self.names[id(e)]])
         if key not in self.known:
             self.known[key] = self.expr(e, scope)
@@ -54,7 +55,7 @@ class _Shared:
     def __init__(self, library: Library, function: ir.Function, unroll: int) -> None:
         self.library, self.function, self.unroll = library, function, unroll
         self.values = self.fresh()
-        self.names: dict[int, list[str]] = {}
+        self.names: dict[int, tuple[str, ...]] = {}
 
     def fresh(self) -> Values:
         """Values of which nothing is known yet."""

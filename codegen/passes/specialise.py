@@ -27,11 +27,9 @@ from codegen.passes.rules.axes import zero_components
 from codegen.passes.rules.fold import constants as fold_constants
 from codegen.passes.rules.guards import guards
 from codegen.passes.rules.identities import identities
-from codegen.passes.rules.powers import ROWS, whole, whole_exponents
+from codegen.passes.rules.powers import whole, whole_exponents
 from codegen.passes.rules.scalars import components
-from codegen.passes.rules.sine_powers import EXPONENT as SINE_EXPONENT
-from codegen.passes.rules.sine_powers import FUNCTION as SINE_POWER
-from codegen.passes.rules.sine_powers import whole_sine_exponents
+from codegen.passes.rules.sine_powers import EXPONENTS, whole_sine_exponents
 from codegen.passes.rules.sums import cancellation
 from codegen.passes.ssa.flow import roots
 from codegen.passes.ssa.values import Rule, Step, Value, Values, constant_components, leaves
@@ -186,8 +184,7 @@ def _noting(left_whole: set[str]) -> CallRule:
     """A rule that applies nowhere and notes the powers with constant whole exponents that it meets."""
 
     def rule(values: Values, function: ir.Function, arguments: dict[str, Value]) -> None:
-        row = ROWS.get(function.name)
-        exponent = SINE_EXPONENT if function.name == SINE_POWER else None if row is None else row.exponent
+        exponent = EXPONENTS.get(function.name)
         if exponent is not None and whole(arguments[exponent]) is not None:
             left_whole.add(function.name)
 

@@ -88,11 +88,11 @@ def plan_functions(library: Library, options: Options) -> Plan:
 
 def locked(library: Library, options: Options, selection: Selection, files: Mapping[str, str]) -> Lock:
     """The lock for the files of a selection."""
-    half = half_hash(library, selection.source_hash) if options.half else selection.source_hash
+    hashed = half_hash(library, selection.source_hash) if options.half else selection.source_hash
     structs = half_structs(selection.structs) if options.half else selection.structs
     return Lock(
         version=VERSION,
-        source_hash=half,
+        source_hash=hashed,
         options=options,
         files={name: file_hash(text.encode("utf-8")) for name, text in files.items()},
         functions={name: promise(library, name, half=options.half) for name in selection.names},

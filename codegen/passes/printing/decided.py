@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from codegen.ir import nodes as ir
+from codegen.ir.content import is_constant
 from codegen.ir.types import BOOL
 from codegen.ir.unit import Unit
 
@@ -20,11 +21,6 @@ from codegen.ir.unit import Unit
 def drop_decided(unit: Unit) -> Unit:
     """The unit without conditional expressions whose condition holds no variable and no call."""
     return Unit(tuple(map(_function, unit.functions)), unit.structs)
-
-
-def is_constant(e: ir.Expr) -> bool:
-    """Whether an expression is made of constants and built-ins alone."""
-    return not isinstance(e, ir.Var | ir.Call) and all(map(is_constant, ir.children(e)))
 
 
 def _function(f: ir.Function) -> ir.Function:

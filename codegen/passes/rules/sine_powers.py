@@ -10,15 +10,17 @@ the hair; of higher powers the same rounding is below a millionth.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32
-from codegen.passes.rules.powers import NAME, ROUNDING, least_base, multiplications, power_of, whole
+from codegen.passes.rules.powers import NAME, ROUNDING, ROWS, least_base, multiplications, power_of, whole
 from codegen.passes.ssa.values import Value, Values
 
 FUNCTION = "shell_sine_power"
 EXPONENT = "p"
+EXPONENTS: Mapping[str, str] = {**{name: row.exponent for name, row in ROWS.items()}, FUNCTION: EXPONENT}
+"""Every function that whole exponents turn into multiplications, and its argument that is the exponent."""
 ROUNDINGS = 4
 """Roundings of the square: a product of three components, and the difference from 1."""
 

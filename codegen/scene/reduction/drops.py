@@ -16,6 +16,7 @@ import numpy as np
 from codegen.evaluate.arrays import Value, arithmetic, convert_inputs
 from codegen.evaluate.interpreter import Frame
 from codegen.ir import nodes as ir
+from codegen.ir.content import variables
 from codegen.ir.types import F32
 from codegen.library import Library
 
@@ -88,9 +89,8 @@ class _Own:
 
     @staticmethod
     def of(e: ir.Expr) -> _Own:
-        nodes = list(ir.walk(e))
-        count = sum(isinstance(x, ir.Unary | ir.Binary | ir.Builtin | ir.Select) for x in nodes)
-        return _Own(count, frozenset(x.name for x in nodes if isinstance(x, ir.Var)))
+        count = sum(isinstance(x, ir.Unary | ir.Binary | ir.Builtin | ir.Select) for x in ir.walk(e))
+        return _Own(count, frozenset(variables(e)))
 
 
 def _size(e: ir.Expr, locals_: Mapping[str, _Own]) -> int:

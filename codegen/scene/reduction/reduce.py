@@ -16,8 +16,8 @@ from codegen.evaluate.memory import Memory
 from codegen.ir import nodes as ir
 from codegen.library import Library
 from codegen.passes.analysis.operations import operations
-from codegen.passes.rules.powers import LARGEST, ROWS
-from codegen.passes.rules.sine_powers import FUNCTION as SINE_POWER
+from codegen.passes.rules.powers import LARGEST
+from codegen.passes.rules.sine_powers import EXPONENTS
 from codegen.passes.specialise import Specialised, specialise
 from codegen.passes.ssa.text import show
 from codegen.scene.beside import beside
@@ -34,8 +34,6 @@ from codegen.scene.reduction.scales import gathered
 from codegen.scene.reduction.search import Found, Search, Substitution
 from codegen.scene.reduction.sites import Path
 
-SETTLED = frozenset((*ROWS, SINE_POWER))
-"""What whole exponents turn into multiplications, so that no variant is looked for."""
 SMALLEST_GAIN = 0.005
 """Share of the price that a form has to save to be worth its error."""
 MOST_DROPS = 4
@@ -146,7 +144,7 @@ class Reducer:
         """The powers and variants for a target."""
         changes: list[Change] = []
         powers = self.powers(self.exact(), budget, changes)
-        found = self.search.find(prices, budget, SETTLED if powers else frozenset())
+        found = self.search.find(prices, budget, frozenset(EXPONENTS) if powers else frozenset())
         return Chosen(powers, found, tuple(changes))
 
     def reduced(self, prices: Prices, budget: float, chosen: Chosen | None = None) -> Reduced:
