@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.errors import UserError
+from codegen.fur.meshfile import load_mesh, require_trimesh
 
 if TYPE_CHECKING:
     import trimesh
@@ -18,15 +18,12 @@ if TYPE_CHECKING:
 Doubles = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-LARGEST_FILE = 1 << 29
-"""Bytes; a text file of a million triangles has a fifth of that."""
 MOST_TRIANGLES = 1 << 17
 """In a file: cutting more into charts takes minutes."""
 MOST_SUBDIVIDED = 1 << 19
 """Drawn: the fins of more would not fit the 256 MiB that WebGPU promises for a buffer."""
 FARTHEST = 1.0e3
 """Coordinates up to which shell_offset declares its error."""
-_SILENT = logging.NullHandler()
 FLATTEST = 1.0e-12
 """Twice the area of a face below which it counts as degenerate, as a share of the mesh's size squared."""
 
@@ -54,34 +51,10 @@ class Surface:
         return float(np.linalg.norm(np.ptp(self.positions, axis=0)))
 
 
-def load_mesh(path: Path) -> trimesh.Trimesh:
-    """The triangles of a mesh file, as they are there; raises UserError for a file that holds none."""
-    mesh_package: Any = require_trimesh()
-    if not path.is_file():
-        what = "is a folder, not a mesh file" if path.is_dir() else "there is no such mesh file"
-        raise UserError(f"{path}: {what}")
-    if path.stat().st_size > LARGEST_FILE:
-        raise UserError(f"{path}: is larger than {LARGEST_FILE >> 20} MiB; simplify the mesh first")
-    try:
-        loaded = mesh_package.load_mesh(str(path), process=False)
-    except Exception as error:  # trimesh raises whatever its many format readers raise
-        raise UserError(f"{path}: cannot be read as a mesh ({_reason(error)})") from error
-    if not isinstance(loaded, mesh_package.Trimesh) or len(loaded.faces) == 0:
-        raise UserError(f"{path}: holds no triangles")
-    if loaded.vertices.shape[1] != 3:
-        raise UserError(f"{path}: its vertices are not of three coordinates")
-    if not np.isfinite(loaded.vertices).all():
-        raise UserError(f"{path}: has a vertex that is not finite")
-    if not ((loaded.faces >= 0) & (loaded.faces < len(loaded.vertices))).all():
-        raise UserError(f"{path}: has a face with a vertex that is not there")
-    mesh: trimesh.Trimesh = loaded
-    return mesh
-
-
 def read_surface(path: Path, channels: tuple[str, str] = ("", "")) -> Surface:
     """Read a mesh that is to bear fur.
 
-    path      OBJ, PLY, glTF or another format that trimesh reads
+    path      of one of meshfile.FORMATS
     channels  vertex colours ("red", "green", "blue") that paint length and density; "": 1 everywhere
     errors    UserError for a file that is missing, unreadable, empty, huge or far away, and for colours
               that are asked for and missing
@@ -165,17 +138,6 @@ def face_normals(positions: Doubles, triangles: Integers) -> Doubles:
     return _unit(np.cross(b - a, c - a))
 
 
-def require_trimesh() -> Any:
-    """The package trimesh; raises UserError where it is not installed."""
-    try:
-        import trimesh
-    except ImportError:
-        raise UserError("meshes need the package trimesh; install vair[render]") from None
-    # Without a handler Python prints what it logs; what matters of it becomes a sentence.
-    logging.getLogger("trimesh").addHandler(_SILENT)
-    return trimesh
-
-
 def _split(corners: Doubles) -> Doubles:
     """Corner values (4 F, 3, k) of the triangles into which subdivide_loop splits (F, 3, k)."""
     a, b, c = (corners[:, k] for k in range(3))
@@ -211,20 +173,3 @@ def _paint(path: Path, mesh: trimesh.Trimesh, channels: tuple[str, str]) -> Doub
 def _unit(a: Doubles) -> Doubles:
     unit: Doubles = a / np.maximum(np.linalg.norm(a, axis=1, keepdims=True), 1e-300)
     return unit
-
-
-def _reason(error: Exception) -> str:
-    """What a reader of some format means, as the end of a sentence."""
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    match error:
-        case KeyError():
-            return f'it lacks "{error.args[0]}"'
-        case FileNotFoundError():
-            return f"it refers to a file that is not there, {error.filename or lines[0]}"
-        case OSError():
-            return error.strerror or type(error).__name__
-        case NotImplementedError():
-            return "its name ends in no known format of meshes"
-        case ImportError():  # of a package that guesses encodings
-            return "its text is in no known encoding"
-    return lines[0].rstrip(".") if lines else "its parts contradict each other"

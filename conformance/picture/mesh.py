@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import trimesh
 
-from codegen.fur.surface import load_mesh
+from codegen.fur.meshfile import load_mesh
 
 Doubles = npt.NDArray[np.float64]
 
