@@ -15,6 +15,7 @@ PACKAGES = ("codegen", "conformance")
 SHARED = ("codegen.documents", "codegen.errors")
 SCENE = ("codegen.scene.description",)
 CHECK = ("merge", "replay", "result", "failure", "interval", "accuracy", "identity", "shard")
+MESH = ("codegen.fur.surface", "codegen.fur.meshfile")
 VENDOR = ("lock", "options", "install", "state", "exchange", "exclusive")
 
 MODULES: dict[str, tuple[str, ...]] = {
@@ -39,8 +40,12 @@ MODULES: dict[str, tuple[str, ...]] = {
     "factors": ("codegen.factors.maps", "codegen.maps.image", *SHARED),
     "table": ("codegen.tables.stored", "codegen.maps.image", *SHARED),
     "image": ("codegen.maps.image", *SHARED),
-    "mesh": ("codegen.fur.surface", *SHARED),
-    "mesh_ply": ("codegen.fur.surface", *SHARED),
+    "mesh": (*MESH, *SHARED),
+    "mesh_ply": (*MESH, *SHARED),
+    "mesh_gltf": (*MESH, *SHARED),
+    "mesh_glb": (*MESH, *SHARED),
+    "mesh_stl": (*MESH, *SHARED),
+    "mesh_off": (*MESH, *SHARED),
     "strands": ("codegen.strands.tfx", *SHARED),
     "line_map": ("codegen.lines.linemap", "codegen.lines.where", *SHARED),
     "compiler_log": ("codegen.lines.linemap", "codegen.lines.where", *SHARED),

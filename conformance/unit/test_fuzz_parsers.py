@@ -228,7 +228,7 @@ def test_what_a_library_logs_of_a_mesh_is_not_printed(tmp_path: Path) -> None:
     (tmp_path / "own.ply").write_bytes(
         whole.replace(b"face 2", b"face 2222").replace(b"0 1 0 255", b"0 1 255")
     )
-    code = "import sys; from pathlib import Path; from codegen.fur.surface import load_mesh\n"
+    code = "import sys; from pathlib import Path; from codegen.fur.meshfile import load_mesh\n"
     code += "load_mesh(Path(sys.argv[1]))"
     command = [sys.executable, "-c", code, str(tmp_path / "own.ply")]
     done = subprocess.run(command, capture_output=True, text=True, check=True)

@@ -2,14 +2,18 @@
 
 Plan.
   meshes   every kind of unreadable file: cut off, garbage, without positions, with indices or coordinates
-           that are none, folders, unknown formats, files that refer to others; no sentence names an exception
+           that are none, folders, unknown formats, archives, files that refer to others or announce what no
+           memory holds; no sentence names an exception
   scenes   numbers that are not, negative lengths, zero shells, lights and cameras that point nowhere
   output   a folder that cannot be written
 """
 
+import io
 import json
+import os
 import re
 import struct
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -65,6 +69,39 @@ def too_long(about: dict[str, Any]) -> None:
     about["bufferViews"][0]["byteLength"] = 10**9
 
 
+def outside(about: dict[str, Any]) -> None:
+    about["buffers"][0]["uri"] = "../../secret"
+
+
+def endless(about: dict[str, Any]) -> None:
+    """A buffer that would never end."""
+    about["buffers"][0]["uri"] = "/dev/zero"
+
+
+def announced(about: dict[str, Any]) -> None:
+    """Numbers that are not in the file, which stand for zeros."""
+    for accessor in about["accessors"]:
+        del accessor["bufferView"]
+        accessor["count"] = 10**9
+
+
+def copied(about: dict[str, Any]) -> None:
+    about["nodes"] = [{"mesh": 0} for _ in range(3000)]
+    about["scenes"] = [{"nodes": list(range(3000))}]
+
+
+def crowded(about: dict[str, Any]) -> None:
+    about["nodes"] += [{} for _ in range(20_000)]
+
+
+def compressed(data: str) -> bytes:
+    """A mesh in an archive, as some programs hand them over."""
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as file:
+        file.writestr("mesh.obj", data)
+    return archive.getvalue()
+
+
 Content = str | bytes | Callable[[Path], bytes] | None
 MESHES: dict[str, tuple[Content, str]] = {
     "absent.obj": (None, "there is no such mesh file"),
@@ -85,8 +122,18 @@ MESHES: dict[str, tuple[Content, str]] = {
     "bare.glb": (lambda folder: glb(folder, without_positions), 'it lacks "POSITION"'),
     "long.glb": (lambda folder: glb(folder, too_long), "cannot be read as a mesh"),
     "elsewhere.gltf": (lambda folder: gltf(folder), "it refers to a file that is not there, gone.bin"),
-    "mesh.doc": (TRIANGLE, "its name ends in no known format of meshes"),
-    "mesh": (TRIANGLE, "its name ends in no known format of meshes"),
+    "outside.gltf": (lambda folder: gltf(folder, outside), "it refers to ../../secret, which lies outside"),
+    "endless.gltf": (lambda folder: gltf(folder, endless), "it refers to /dev/zero, which lies outside"),
+    "announced.glb": (lambda folder: glb(folder, announced), "its parts have 2e+09 vertices and indices"),
+    "copied.glb": (lambda folder: glb(folder, copied), "it is put together of 3000 parts, more than 2048"),
+    "crowded.glb": (lambda folder: glb(folder, crowded), "nodes, more than 16384"),
+    "many.obj": (
+        TRIANGLE + "".join(f"usemtl m{k}\nf 1 2 3\n" for k in range(3000)),
+        "it is put together of 3000 parts, more than 2048",
+    ),
+    "mesh.zip": (compressed(TRIANGLE), "its name ends in none of .obj, .ply, .gltf, .glb, .stl, .off"),
+    "mesh.doc": (TRIANGLE, "its name ends in none of .obj, .ply, .gltf, .glb, .stl, .off"),
+    "mesh": (TRIANGLE, "its name ends in none of .obj, .ply, .gltf, .glb, .stl, .off"),
 }
 
 
@@ -96,11 +143,11 @@ def cut(folder: Path, name: str) -> bytes:
     return data[: len(data) // 2]
 
 
-def gltf(folder: Path) -> bytes:
-    """A description alone, whose buffer is in a file that is missing."""
+def gltf(folder: Path, change: Callable[[dict[str, Any]], Any] = elsewhere) -> bytes:
+    """A description alone, whose buffer is in a file that is missing, or is changed otherwise."""
     found: list[dict[str, Any]] = []
     glb(folder, found.append)
-    elsewhere(found[0])
+    change(found[0])
     return json.dumps(found[0]).encode()
 
 
@@ -132,6 +179,23 @@ def test_a_folder_is_no_mesh(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     (tmp_path / "folder.obj").mkdir()
     said = refused(tmp_path, capsys, FURRY.replace("../data/bunny.obj", "folder.obj"))
     assert "folder.obj: is a folder, not a mesh file" in said
+
+
+def test_materials_of_a_mesh_are_not_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A pipe that nobody writes would hold a reader for ever."""
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "flat.obj").write_text(
+        "mtllib pipe\n" + TRIANGLE.replace("v 0 1 0", "v 2 0 0"), encoding="utf-8"
+    )
+    said = refused(tmp_path, capsys, FURRY.replace("../data/bunny.obj", "flat.obj"))
+    assert "all of its 1 triangles are degenerate" in said
+
+
+def test_a_pipe_is_no_part_of_a_mesh(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    os.mkfifo(tmp_path / "gone.bin")
+    (tmp_path / "mesh.gltf").write_bytes(gltf(tmp_path))
+    said = refused(tmp_path, capsys, FURRY.replace("../data/bunny.obj", "mesh.gltf"))
+    assert "it refers to a file that is not there, gone.bin" in said
 
 
 NUMBERS: dict[str, tuple[str, str, str]] = {
