@@ -2,14 +2,17 @@
 
 Plan.
   prepared  the reference and the intervals of all lanes are those of direct calls, and are computed once
-  shared    a second process reads what the first one computed; nothing half-written is ever seen
+  shared    a second process waits for what the first one computes, and reads it; nothing half-written is seen
+  files     other inputs have other files, whatever their families are called
   ahead     functions come in order, prepared in another process, with the same values
 """
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from fnmatch import fnmatchcase
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -82,6 +85,24 @@ def test_any_other_function_is_followed_on_every_lane(tmp_path: Path) -> None:
     assert not permitted(library, "probe", ready.sample.inputs, "wgsl", follow_forks=False).guaranteed.any()
 
 
+@pytest.mark.parametrize("lanes", [1, 3 * prepared.FOLLOWED])
+def test_one_lane_of_so_many_is_followed_where_any_glob_names_a_function(
+    lanes: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(prepared, "COSTLY", ("another*", "prob*"))
+    a = np.full(lanes, 2.0**-127, np.float32)
+    ready = prepare(library_of(tmp_path, FORKS), "probe", [Draw("uniform", lanes, 1, {"a": a, "b": -a / 2})])
+    found: Any = ready.permitted("wgsl")
+    assert np.flatnonzero(found.guaranteed).tolist() == list(range(0, lanes, prepared.FOLLOWED))
+
+
+def test_truth_without_a_reference_names_the_function(tmp_path: Path) -> None:
+    one = np.ones(1, np.float32)
+    ready = prepare(library_of(tmp_path, FORKS), "probe", [Draw("uniform", 1, 1, {"a": one, "b": one})])
+    with pytest.raises(KeyError, match="probe"):
+        _ = ready.truth
+
+
 def test_narrower_intervals_bring_their_causes_along() -> None:
     """Codes of the lanes that are replaced count on after those of all lanes; 0 stays bounded."""
     first, second, third = (Cause("f", line, "/", "y", "the divisor may be 0") for line in (1, 2, 3))
@@ -133,6 +154,25 @@ def test_other_process_reads_what_the_first_one_left(
     assert {p.suffix for p in tmp_path.iterdir()} == {".pickle", ".lock"}
 
 
+def test_other_inputs_have_other_files(tmp_path: Path) -> None:
+    """Whatever families are called: the digit at the end of one is none of its count."""
+    inputs = small()[0].inputs
+    drawn = [
+        (("near", 12),),
+        (("near1", 2),),
+        (("near", 1), ("", 2)),
+        (("near", 12), ("near1", 2)),
+        ((".12", 1),),
+    ]
+    keys = {
+        prepare(
+            load_library(), NAME, [Draw(family, count, 1, inputs) for family, count in some], tmp_path
+        ).key
+        for some in drawn
+    }
+    assert len(keys) == len(drawn)
+
+
 def test_nothing_half_written_is_shared(tmp_path: Path) -> None:
     path = tmp_path / "value.pickle"
 
@@ -144,6 +184,24 @@ def test_nothing_half_written_is_shared(tmp_path: Path) -> None:
     assert not path.exists()
     assert shared(path, lambda: 7) == 7
     assert shared(path, lambda: 8) == 7
+
+
+def test_who_comes_second_waits_for_the_first(tmp_path: Path) -> None:
+    path, begun, go_on = tmp_path / "value.pickle", Event(), Event()
+
+    def slowly() -> int:
+        begun.set()
+        assert go_on.wait(60.0)
+        return 7
+
+    with ThreadPoolExecutor(2) as pool:
+        first = pool.submit(shared, path, slowly)
+        assert begun.wait(60.0)
+        second = pool.submit(shared, path, lambda: 8)
+        with pytest.raises(TimeoutError):
+            second.result(0.1)
+        go_on.set()
+        assert (first.result(60.0), second.result(60.0)) == (7, 7)
 
 
 @pytest.mark.parametrize("worthwhile", [1, 99], ids=["in another process", "here"])
