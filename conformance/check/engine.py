@@ -87,7 +87,7 @@ def check_function(
 
 @dataclass
 class _BoundVerdict:
-    """Lane by lane: where one bound holds, the error under it, and where it is missed."""
+    """Lane by lane: where a bound judges (nothing infinite or exempt), the error, where it is missed."""
 
     bound: Bound
     inside: Mask
@@ -109,7 +109,7 @@ def _judge(
     result.lanes, result.non_finite = count, int((~finite).sum())
     result.ambiguous = int(truth.doubtful.sum())
     verdicts = _bounds(result, ready, bounds, got, finite)
-    use = finite & ~truth.doubtful & np.logical_or.reduce([v.inside for v in verdicts])
+    use = np.logical_or.reduce([v.inside for v in verdicts])
     result.accuracy = accuracy.measured(ready.function, ready.sample, got, truth.expected, use)
     outside, excess = np.zeros(count, np.bool_), np.zeros(count)
     if intervals:

@@ -35,6 +35,12 @@ def test_draws_are_joined_field_by_field(name: str) -> None:
         assert np.array_equal(whole, np.concatenate([parts[k] for parts in apart]))
 
 
+@pytest.mark.parametrize("name", ["sin_angle", "to_local"])
+def test_single_draw_joined_is_itself(name: str) -> None:
+    (found, *_) = engine.draws(load_library().function(name), 30, 20)
+    assert all(map(np.array_equal, columns(together([found]).inputs), columns(found.inputs)))
+
+
 @pytest.mark.parametrize("name", ["sin_angle", "to_local", "bessel_i0e"])
 def test_draws_take_every_family_and_can_be_repeated(name: str) -> None:
     function = load_library().function(name)

@@ -21,7 +21,7 @@ import pytest
 from codegen.library import Library, load_library
 from conformance.check import engine, prepared
 from conformance.check.engine import Backend, Draw, check_function
-from conformance.check.failure import FINITE
+from conformance.check.failure import FINITE, WITHIN
 from conformance.check.result import FunctionResult
 from conformance.reference import PROPERTY_ONLY
 from conformance.unit.support.sources import library_of
@@ -214,6 +214,19 @@ def test_failures_of_several_bounds_come_in_the_order_of_the_worst(check: Check)
     share = BOUND.format("a share", "derived", "").replace("absolute", "relative").replace("0.5", "0.125")
     result = check(ALL + share, [(0, 3, 1), (1, 120, 100)])
     assert [f.identity.lane for f in result.failures] == [1, 0], "40 and 1.6 times its bounds before 4 and 16"
+    result = check(ALL + share, [(0, 103, 100), (1, 2, 1)])
+    assert [f.identity.lane for f in result.failures] == [1, 0], (
+        "2 and 8 times before 6, though 3 is more than 1"
+    )
+
+
+def test_error_may_be_any_number_of_times_its_bound(check: Check) -> None:
+    result = check(ALL.replace("0.5", "1e-300"), [(0, 1e30, 0), (1, 0, 0)])
+    assert [(f.identity.lane, f.failed) for f in result.failures] == [(0, (WITHIN,))]
+
+
+def test_whatever_may_be_imported_is_there() -> None:
+    assert all(hasattr(engine, name) for name in engine.__all__)
 
 
 def test_program_is_kept_with_failures_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

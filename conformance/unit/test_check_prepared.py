@@ -115,6 +115,16 @@ def test_narrower_intervals_bring_their_causes_along() -> None:
     assert [found.cause(k) for k in range(4)] == ["", str(second), str(third), str(first)]
 
 
+def test_fields_of_structs_are_replaced_each() -> None:
+    ends, codes = np.array([0.0, 1.0, 2.0]), np.zeros(3, np.int16)
+    whole = Permitted({"near": ends, "far": -ends}, {"near": ends + 9.0, "far": 9.0 - ends}, codes, ())
+    zero = ends[:1]
+    part = Permitted({"near": zero + 3, "far": zero - 3}, {"near": zero + 4, "far": zero}, codes[:1], ())
+    found: Any = prepared.narrowed(whole, np.array([2]), part)
+    assert {name: a.tolist() for name, a in found.low.items()} == {"near": [0, 1, 3], "far": [0, -1, -3]}
+    assert {name: a.tolist() for name, a in found.high.items()} == {"near": [9, 10, 4], "far": [9, 8, 0]}
+
+
 def test_costly_function_is_not_followed_on_all_lanes(monkeypatch: pytest.MonkeyPatch) -> None:
     library = load_library()
     name = next(n for n in library.public if fnmatchcase(n, prepared.COSTLY[0]))
