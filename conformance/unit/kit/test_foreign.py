@@ -1,9 +1,9 @@
-"""A backend that is not ours: the OpenCL C text as C++ with a header of vectors, run on the processor.
+"""A backend that is not ours: the OpenCL C text as plain C with a header of vectors, run on the processor.
 
 Plan. Its runner reads a kit and nothing of the project, and its results are judged like a driver's.
   good   functions of every kind of value pass every verdict
   wrong  a header with a poor dot product is caught, in the functions that call it
-Every function of the library: nightly. Without a C++ compiler the tests are skipped and say so.
+Every function of the library: nightly. Without clang the tests are skipped and say so.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from codegen.cli import run
 from codegen.kernels import kernel_body
 from codegen.library import load_library
 
-FOLDER = Path(__file__).parents[2] / "foreign" / "cpp"
+FOLDER = Path(__file__).parents[2] / "foreign" / "c"
 FUNCTIONS = (
     "sin_angle",
     "pcg3d",
@@ -43,7 +43,7 @@ def load_runner() -> Any:
 def runner() -> Any:
     module = load_runner()
     if module.compiler() is None:
-        pytest.skip("no C++ compiler is here: apt-get install --no-install-recommends g++")
+        pytest.skip("no clang is here: apt-get install --no-install-recommends clang")
     return module
 
 
@@ -75,7 +75,7 @@ def test_a_poor_built_in_is_caught(
 ) -> None:
     """A dot product off by a thousandth spoils what is built on it, and leaves whole numbers alone."""
     sum_of_three = "a.x * b.x + a.y * b.y + a.z * b.z;"
-    for file in FOLDER.glob("*.?pp"):
+    for file in FOLDER.glob("*.[ch]"):
         text = file.read_text(encoding="utf-8")
         poor = text.replace(f"return {sum_of_three}", f"return 1.001f * ({sum_of_three[:-1]});")
         (tmp_path / file.name).write_text(poor, encoding="utf-8")

@@ -6,7 +6,7 @@ Plan. A small kit of functions of every kind of value is written once; the evalu
   judged    right results pass, in words, in numbers, in npz; wrong ones fail by their verdict: off by many
             ULP, NaN, a function without results, one that did not compile; JSON and JUnit as for our drivers
   folder    other people's files are never replaced
-What cannot be judged: test_results. The foreign runner in C++ computes a kit in test_foreign.
+What cannot be judged: test_results. The foreign runner in C computes a kit in test_foreign.
 """
 
 from __future__ import annotations

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Runs functions of the library on the processor: NAME and LANES are arguments, words come from standard input and go
 // to standard output, row after row.
-#include "opencl_vectors.hpp"
+#include "opencl_vectors.h"
 
-#include <cstdio>
-#include <cstdlib>
-#include <vector>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-namespace library {
 #include "library.inc"
-}
 
 static const uint *words_in;
 static uint *words_out;
@@ -24,21 +22,26 @@ static size_t lanes, lane;
 #define store_f32(k, value) store_u32(k, as_uint((float)(value)))
 #define store_bool(k, value) store_u32(k, (value) ? 1u : 0u)
 
-namespace library {
+struct call {
+    const char *name;
+    size_t rows_in, rows_out;
+    void (*run)(void);
+};
+
 #include "calls.inc"
-}
 
 int main(int count, char **arguments) {
     if (count != 3) return 2;
-    lanes = strtoul(arguments[2], nullptr, 10);
-    for (const library::Call &call : library::calls) {
-        if (strcmp(call.name, arguments[1]) != 0) continue;
-        std::vector<uint> in(call.rows_in * lanes), out(call.rows_out * lanes);
-        if (fread(in.data(), sizeof(uint), in.size(), stdin) != in.size()) return 3;
-        words_in = in.data();
-        words_out = out.data();
-        for (lane = 0; lane < lanes; lane++) call.run();
-        return fwrite(out.data(), sizeof(uint), out.size(), stdout) == out.size() ? 0 : 4;
+    lanes = strtoul(arguments[2], NULL, 10);
+    for (size_t k = 0; k < sizeof calls / sizeof calls[0]; k++) {
+        if (strcmp(calls[k].name, arguments[1]) != 0) continue;
+        size_t words = calls[k].rows_in * lanes, results = calls[k].rows_out * lanes;
+        uint *in = malloc(words * sizeof *in), *out = malloc(results * sizeof *out);
+        if (in == NULL || out == NULL || fread(in, sizeof *in, words, stdin) != words) return 3;
+        words_in = in;
+        words_out = out;
+        for (lane = 0; lane < lanes; lane++) calls[k].run();
+        return fwrite(out, sizeof *out, results, stdout) == results ? 0 : 4;
     }
     return 5;
 }

@@ -1,4 +1,4 @@
-"""A runner for a kit, as its README.md describes one: the OpenCL C text as C++, compiled for the processor.
+"""A runner for a kit, as its README.md describes one: OpenCL C text as plain C, compiled for the processor.
 
 `python runner.py KIT RESULTS.json` reads the kit and nothing of the project, as a runner for an engine does.
 """
@@ -13,22 +13,20 @@ from pathlib import Path
 from typing import Any
 
 HERE = Path(__file__).parent
-COMPILERS = ("g++", "clang++", "clang++-15", "c++")
-OPTIONS = ("-std=c++17", "-O1", "-ffp-contract=off", "-w")
+COMPILERS = ("clang", *(f"clang-{version}" for version in range(22, 13, -1)))
+"""GCC has no swizzles and no functions of one name; Debian's PoCL brings a clang along."""
+OPTIONS = ("-std=c11", "-O1", "-ffp-contract=off", "-fno-builtin", "-w")
 LITERAL = re.compile(r"\((float[234]|uint[23])\)\(")
-SWIZZLE = re.compile(r"\.(xy|xz|yx|xyz)\b")
-COMPOUND = re.compile(r"\((\w+)\)\{")
 
 
 def compiler() -> str | None:
-    """The first C++ compiler that is installed."""
+    """The first of these C compilers that is installed."""
     return next((found for found in map(shutil.which, COMPILERS) if found), None)
 
 
-def as_cpp(text: str) -> str:
-    """OpenCL C as C++: constructors instead of vector literals, calls instead of swizzles."""
-    text = LITERAL.sub(r"\1(", text)
-    return COMPOUND.sub(r"\1{", SWIZZLE.sub(r".\1()", text))
+def as_c(text: str) -> str:
+    """OpenCL C as C: calls instead of vector literals."""
+    return LITERAL.sub(r"make_\1(", text)
 
 
 def build(kit: Path, folder: Path, names: list[str]) -> Path:
@@ -37,17 +35,16 @@ def build(kit: Path, folder: Path, names: list[str]) -> Path:
     for name in names:
         vectors = json.loads((kit / "vectors" / f"{name}.json").read_text(encoding="utf-8"))
         body = (kit / "opencl" / "calls" / f"{name}.cl").read_text(encoding="utf-8")
-        calls.append(f"static void call_{name}() {{\n{as_cpp(body)}}}\n")
+        calls.append(f"static void call_{name}(void) {{\n{as_c(body)}}}\n")
         rows = len(vectors["inputs"]), len(vectors["expected"])
         table.append(f'    {{"{name}", {rows[0]}, {rows[1]}, call_{name}}},\n')
-    struct = "struct Call { const char *name; size_t rows_in, rows_out; void (*run)(); };\n"
     (folder / "calls.inc").write_text(
-        "".join([*calls, struct, "static const Call calls[] = {\n", *table, "};\n"]), encoding="utf-8"
+        "".join([*calls, "static const struct call calls[] = {\n", *table, "};\n"]), encoding="utf-8"
     )
     library = (kit / "opencl" / "library.cl").read_text(encoding="utf-8")
-    (folder / "library.inc").write_text(as_cpp(library), encoding="utf-8")
-    program = folder / "program"
-    command = [compiler() or "g++", *OPTIONS, f"-I{folder}", str(HERE / "program.cpp"), "-o", str(program)]
+    (folder / "library.inc").write_text(as_c(library), encoding="utf-8")
+    source, program = HERE / "program.c", folder / "program"
+    command = [compiler() or "clang", *OPTIONS, f"-I{folder}", str(source), "-o", str(program), "-lm"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr)
@@ -74,8 +71,8 @@ def compute(program: Path, kit: Path, name: str) -> dict[str, Any]:
 def run(kit: Path) -> dict[str, Any]:
     """The results of every function of a kit."""
     about = json.loads((kit / "kit.json").read_text(encoding="utf-8"))["kit"]
-    version = subprocess.run([compiler() or "g++", "--version"], capture_output=True, text=True, check=True)
-    driver = f"{version.stdout.splitlines()[0]}, C++ from OpenCL C, {' '.join(OPTIONS)}"
+    version = subprocess.run([compiler() or "clang", "--version"], capture_output=True, text=True, check=True)
+    driver = f"{version.stdout.splitlines()[0]}, C from OpenCL C, {' '.join(OPTIONS)}"
     with tempfile.TemporaryDirectory() as folder:
         program = build(kit, Path(folder), about["functions"])
         functions = {name: compute(program, kit, name) for name in about["functions"]}
