@@ -10,6 +10,7 @@ only the programs named, so nothing is installed and nothing outside the copy is
   a foreign .venv   is never removed
   no package index  is told apart from a broken pin, and leaves an unfinished .venv that is rebuilt
   interrupted       gives the .venv that worked before back
+  three.js          is fetched once for the tests (a stub of npm); without npm or network they run without
 """
 
 import os
@@ -174,6 +175,52 @@ exec {real} "$@"
     assert said.endswith("\ndev: interrupted; the next run carries on cleanly.\n")
     assert (checkout / ".venv" / "vair.setup").read_text() == "a key of other pins\n"
     assert not (checkout / ".venv.old").exists()
+
+
+@pytest.fixture
+def set_up(checkout: Path) -> Path:
+    """A copy whose .venv counts as current, with a Python that passes every check at once."""
+    host = checkout / "examples" / "hosts" / "three"
+    host.mkdir(parents=True)
+    (host / "package-lock.json").write_text("{}")
+    provide(checkout / ".venv" / "bin" / "python", 'case "$1" in -ISc) echo key ;; esac')
+    (checkout / ".venv" / "vair.setup").write_text("key\n")
+    (checkout / "bin" / "sh").symlink_to(str(shutil.which("sh")))
+    return checkout
+
+
+def provide(path: Path, body: str) -> None:
+    """A program that runs this."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"#!/bin/sh\n{body}\n")
+    path.chmod(0o755)
+
+
+def test_three_js_is_fetched_once(set_up: Path) -> None:
+    calls, fetched = set_up / "calls", "examples/hosts/three/node_modules/.package-lock.json"
+    provide(
+        set_up / "bin" / "npm", f'echo "$@" >> "{calls}"\nmkdir -p "${{3}}/node_modules"; : > "{fetched}"'
+    )
+    first, second = (dev(set_up, "test", VAIR_SYSTEM="skip") for _ in range(2))
+    assert (first.returncode, second.returncode) == (0, 0), first.stderr + second.stderr
+    assert "three.js, into examples/hosts/three/node_modules:\n  npm ci" in first.stdout
+    assert "three.js" not in second.stdout
+    (call,) = calls.read_text().splitlines()
+    assert call.startswith("ci --prefix examples/hosts/three ")
+
+
+def test_tests_run_without_npm(set_up: Path) -> None:
+    done = dev(set_up, "test", VAIR_SYSTEM="skip")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "three.js" not in done.stdout and "Tests:" in done.stdout
+
+
+def test_tests_run_where_npm_cannot_fetch(set_up: Path) -> None:
+    provide(set_up / "bin" / "npm", "echo npm error code ECONNREFUSED\nexit 1")
+    done = dev(set_up, "test", VAIR_SYSTEM="skip")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "npm error code ECONNREFUSED\n  Its test is skipped; the next run tries again.\n" in done.stdout
+    assert "Tests:" in done.stdout
 
 
 def test_it_is_quick_and_offline_once_set_up() -> None:

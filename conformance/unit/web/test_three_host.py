@@ -1,6 +1,6 @@
 """The three.js host in Chromium without a window: the ES 3.00 library in a ShaderMaterial draws the sphere.
 
-three.js is the reader's own: `npm install` in examples/hosts/three brings it, and the test skips without it.
+`./dev test` fetches three.js where npm is; so does `npm ci` in examples/hosts/three. The test skips without.
 """
 
 import base64
@@ -27,7 +27,7 @@ RADIUS = 0.98
 
 def test_a_material_of_three_js_draws_the_sphere() -> None:
     if not (ROOT / BUILT).is_dir():
-        pytest.skip(f"three.js is not here: npm install in {HOST}")
+        pytest.skip(f"three.js is not here: npm ci --prefix {HOST}")
     reason = missing()
     if reason:
         pytest.skip(reason)
