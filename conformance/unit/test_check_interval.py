@@ -44,6 +44,8 @@ X = np.float32(1.1)
 LOW, HIGH = 3.2999999523162842, 3.3000001907348633
 """The float32 numbers around 3 X, either of which WGSL permits."""
 STEP = HIGH - LOW
+ZEROS = {"w": (0, 1), "x": (2, 3, 4, 5), "y": (6,), "z": (7, 8, 9)}
+"""Lanes in which a parameter is 0."""
 
 Judge = Callable[..., FunctionResult]
 
@@ -112,6 +114,16 @@ def test_unguaranteed_results_count_for_nothing(judge: Judge) -> None:
     bad = judge(QUOTIENT, {"x": [0, 2]}, [77, 0.75])
     assert counts(bad) == (1, 0, 0, 1, 1)
     assert bad.failed == (PERMITTED,)
+
+
+def test_most_frequent_causes_are_told(judge: Judge) -> None:
+    lines = "".join(f"    of_{name} = 1.0 / {name}\n" for name in ZEROS)
+    source = f"def probe(w: X, x: X, y: X, z: X) -> f32:\n{lines}    return of_w + of_x + of_y + of_z\n"
+    zero = {name: [0.0 if k in lanes else 1.0 for k in range(10)] for name, lanes in ZEROS.items()}
+    result = judge(source, zero, [4.0] * 10)
+    assert result.permitted is not None
+    told = [(cause.partition(" of ")[0], count) for cause, count in result.permitted.causes.items()]
+    assert told == [("line 4", 4), ("line 6", 3), ("line 3", 2)]
 
 
 @pytest.mark.parametrize("got", [NAN, INF, -INF])

@@ -119,6 +119,23 @@ def test_what_has_no_value_on_every_target_stays(returns: str, text: str, tmp_pa
     assert any(isinstance(e, kinds) for e in ir.expressions(found.function.body))
 
 
+@pytest.mark.parametrize(
+    ("type_", "number", "folded"),
+    [
+        *(("i32", x, True) for x in (2147483520.0, -2147483648.0, 63.5, -63.5)),
+        *(("i32", x, False) for x in (2147483648.0, -2147483904.0)),
+        *(("u32", x, True) for x in (4294967040.0, 65.0, 0.5, -0.5)),
+        *(("u32", x, False) for x in (4294967296.0, -1.0)),
+    ],
+)
+def test_conversions_are_folded_up_to_the_ends_of_the_type(
+    type_: str, number: float, folded: bool, tmp_path: Path
+) -> None:
+    """The float32 next to an end, and the end itself or the one beyond."""
+    _, found = made(tmp_path, type_, f"{type_}(a)", constants={"a": number})
+    assert any(isinstance(e, ir.Convert) for e in ir.expressions(found.function.body)) != folded
+
+
 @pytest.mark.parametrize("text", ["a * b", "c * 0.5", "c - c * 0.75"])
 def test_what_may_be_flushed_stays(text: str, tmp_path: Path) -> None:
     _, found = made(tmp_path, "f32", text, constants=TINY)
@@ -144,6 +161,7 @@ CANCELS = {
     "((((r + k) + 1.0) + 2.0) + 3.0) - k": 1,
     "(r - k) - (r + k)": 1,
     "3.0 * (r + k) - 3.0 * k - r": 2,
+    "r * k + r * k + r * (k * -2.0)": 0,
 }
 """A sum, and how many operations are left of it."""
 REMAINS = {

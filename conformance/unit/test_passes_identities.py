@@ -117,6 +117,37 @@ def test_row_says_what_it_is(row: Row) -> None:
     assert row.note != row.kind and re.fullmatch(r"[A-Za-z0-9 ,;^'()*/+-]+", row.note)
 
 
+OPERATIONS = (
+    "+",
+    "-",
+    "*",
+    "/",
+    "//",
+    "%",
+    "<<",
+    ">>",
+    "&",
+    "|",
+    "^",
+    "<",
+    "<=",
+    ">",
+    ">=",
+    "==",
+    "!=",
+    "and",
+    "or",
+)
+
+
+@pytest.mark.parametrize("text", [*(f"x {op} y" for op in OPERATIONS), "min(x, y)", "y if x else z"])
+def test_operands_of_a_pattern_come_as_they_are_written(text: str) -> None:
+    """The condition of a choice first, as the IR has it."""
+    found = patterns.parse(text)
+    assert isinstance(found, patterns.Operation)
+    assert found.operands[:2] == (patterns.Name("x"), patterns.Name("y"))
+
+
 @pytest.mark.parametrize("row", ROWS, ids=row_id)
 def test_replacement_is_a_permitted_result_of_the_pattern(row: Row) -> None:
     library = load_library()

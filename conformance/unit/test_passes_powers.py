@@ -3,6 +3,7 @@
 Plan.
   forms      every form of the two powers has a row, and is multiplied out when asked
   stays      exponents that are no whole numbers or above what was asked
+  error      what is stated covers every operation rounded the same way
   products   as many as are told, and of as many numbers: every exponent in exact numbers
   ends       bases end where powers stay normal numbers, and where powers saturate; a power of 1 is its base
 """
@@ -16,7 +17,17 @@ import pytest
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32
 from codegen.library import load_library
-from codegen.passes.rules.powers import NAME, ROWS, largest_base, least_base, multiplications, power_of
+from codegen.passes.rules.powers import (
+    LARGEST,
+    NAME,
+    ROUNDING,
+    ROWS,
+    error,
+    largest_base,
+    least_base,
+    multiplications,
+    power_of,
+)
 from codegen.passes.specialise import specialise
 from codegen.passes.ssa.values import Values
 
@@ -47,6 +58,13 @@ def test_whole_power_is_multiplied_out(name: str) -> None:
 @pytest.mark.parametrize("exponent", [8.5, MOST + 1.0])
 def test_other_powers_stay(exponent: float) -> None:
     assert all(steps(name, exponent) == [] for name in ROWS)
+
+
+@pytest.mark.parametrize("roundings", [0, 1])
+def test_stated_error_covers_all_roundings_upwards(roundings: int) -> None:
+    for exponent in (1, 2, 7, MOST, LARGEST):
+        all_up = (1 + Fraction(ROUNDING)) ** (exponent * roundings + exponent - 1)
+        assert all_up - 1 <= Fraction(error(exponent, roundings))
 
 
 def exponent_of(e: ir.Expr, products: set[int]) -> int:

@@ -23,6 +23,7 @@ from codegen.ir.types import BOOL, F32, I32, VEC3, Field, Struct, array_of
 from codegen.library import load_library
 from codegen.passes.analysis.norms import Lengths
 from codegen.passes.analysis.ranges import Ranges
+from codegen.passes.analysis.transfer import transfers
 from codegen.passes.inline import Inliner, joined
 from codegen.passes.placement.regions import place
 from codegen.passes.rules.scalars import components
@@ -212,6 +213,13 @@ def test_range_of_one_number_holds_what_every_table_permits() -> None:
     (bound,) = ranges.bounds(power)
     assert (bound.low, bound.high) == (min(low), max(high))
     assert len(set(low)) > 1
+
+
+@pytest.mark.parametrize("e", [ir.Const(F32, 1.0), ir.Var(F32, "x"), ir.Call(F32, "f", ())], ids=repr)
+def test_leaves_and_calls_are_no_operations(e: ir.Expr) -> None:
+    for transfer in transfers():
+        with pytest.raises(TypeError, match=type(e).__name__):
+            transfer.computed(e, ())
 
 
 def test_elements_of_an_array_are_not_one_value() -> None:

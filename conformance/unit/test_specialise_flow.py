@@ -72,6 +72,10 @@ CONTROL = {
         "    a = x\n    b = k\n    for i in range(9):\n        c = a\n        a = b\n        b = c\n"
         "    return a - 2.0 * b\n"
     ),
+    "each from both": (
+        "    a = x\n    b = k\n    for i in range(9):\n        c = a * 0.5 + b\n        b = a - b * 0.5\n"
+        "        a = c\n    return a - 2.0 * b\n"
+    ),
     "return in a loop": (
         "    y = x\n    for i in range(12):\n        if y > 3.0:\n            return y * k\n"
         "        y = y + 0.5\n    return -y\n"
@@ -144,6 +148,35 @@ def test_control_flow_computes_what_it_did(tmp_path: Path, name: str) -> None:
     np.testing.assert_array_equal(np.broadcast_to(special, general.shape), general)
     if name == "loop without use":
         assert lines(found) == ["return k;"]
+
+
+UNNEEDED = """def f(x: X, k: X) -> f32:
+    y = x
+    z = k
+    if x < k:
+        for i in range(9):
+            z = exp(z)
+        y = sqrt(abs(y)) * sin(k)
+    else:
+        for i in range(8):
+            z = exp(z)
+        y = cos(y) * sin(x)
+    for i in range(7):
+        for j in range(6):
+            z = exp(z)
+        if z > k:
+            z = exp(z)
+        y = y * 0.5 + k
+    return y
+"""
+
+
+def test_what_the_result_does_not_need_is_gone_at_every_depth(tmp_path: Path) -> None:
+    """On both sides of a branch that stays, and inside a loop that stays."""
+    found = specialise(library_of(tmp_path, UNNEEDED), "f", new_name="g", unroll=0)
+    left = [type(s) for s in ir.statements(found.function.body) if isinstance(s, ir.For | ir.If)]
+    assert left == [ir.If, ir.For]
+    assert not any("exp" in line for line in lines(found))
 
 
 LIMITED = (
