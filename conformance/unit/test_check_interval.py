@@ -229,10 +229,14 @@ def test_worst_field_of_a_struct_counts() -> None:
 def test_rearrangement_is_told_where_it_is_allowed(
     judge: Judge, target: str, table: str, allowed: bool
 ) -> None:
-    """By the table that judges. The evaluator is judged by WGSL's, yet rearranges nothing itself."""
+    """By the table that judges. The evaluator is judged by WGSL's, yet rearranges nothing itself.
+
+    Beside it a result that needs no rearrangement.
+    """
     x, y, tenth = np.float32(1e8), np.float32(-1e8), np.float32(0.1)
-    result = judge(SUM, {"x": [x], "y": [y]}, [(x + tenth) + y], target, table=table)
-    assert counts(result) == ((1, 0, 1, 0, 0) if allowed else (1, 0, 0, 1, 0))
+    written, other = (np.float32(1.0) + np.float32(2.0)) + tenth, (x + tenth) + y
+    result = judge(SUM, {"x": [1.0, x], "y": [2.0, y]}, [written, other], target, table=table)
+    assert counts(result) == ((2, 1, 1, 0, 0) if allowed else (2, 1, 0, 1, 0))
     assert ("after a rearrangement" in interval_text(result)) == allowed
 
 
