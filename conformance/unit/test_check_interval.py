@@ -214,6 +214,14 @@ def test_worst_field_of_a_struct_counts() -> None:
     low, high = {"a": np.array([0.0]), "b": np.array([0.0])}, {"a": np.array([2.0]), "b": np.array([2.0])}
     got = {"a": np.array([4.0], np.float32), "b": np.array([1.0], np.float32)}
     assert interval.excess(low, high, got).tolist() == [3.0]
+    with pytest.raises(ValueError):
+        interval.excess(low, high, {"a": got["a"]})
+
+
+def test_result_inside_is_out_by_its_whole_interval_at_most() -> None:
+    """Even where half the width is no number above 0."""
+    ends = np.zeros(1), np.full(1, 5e-324)
+    assert all(interval.excess(*ends, x) <= 1.0 for x in ends)
 
 
 @pytest.mark.parametrize(

@@ -110,6 +110,10 @@ CONTROL = {
         "    y = x\n    z = k\n    for i in range(9):\n        y = y + 0.25\n        z = k\n"
         "    return y * z\n"
     ),
+    "one of two stays": (
+        "    y = x\n    z = k\n    for i in range(9):\n        y = y + 0.25 * z\n        z = z * 1.0\n"
+        "    return y * z\n"
+    ),
     "loop in a loop": (
         "    y = x\n    z = 0.0\n    for i in range(2, 7):\n        for j in range(6):\n"
         "            y = y * 0.5 + f32(i) * k\n            z = z + f32(j)\n        y = y - z * 0.01\n"
