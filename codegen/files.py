@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import glob
 import os
+import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from codegen.errors import UserError
+from codegen.vendor.exchange import exchange
+from codegen.vendor.exclusive import exclusive
 
 
 def write_text(path: Path, text: str) -> None:
@@ -43,30 +47,74 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write several files into a folder, made if need be, so that either all of them are new or none is.
 
     They are first written beside the folder; files of other names that lie in it stay. A name may lead into a
-    folder below it, with / between.
+    folder below it, with / between. One run at a time writes. Where nothing but these files lies in the
+    folder, old and new change places in one step, so that a run that is killed leaves one set or the other;
+    elsewhere they move in one by one.
 
     raises  UserError where that is not possible
     """
     if folder.exists() and not folder.is_dir():
         raise UserError(f'cannot write into "{folder}": it is a file')
-    parent = folder.resolve().parent
-    if not parent.is_dir():
-        raise UserError(f'cannot make "{folder}": the folder "{parent}" does not exist')
+    place = folder.resolve()
+    if not place.parent.is_dir():
+        raise UserError(f'cannot make "{folder}": the folder "{place.parent}" does not exist')
     try:
-        with tempfile.TemporaryDirectory(dir=parent, prefix=".vair-") as aside:
-            for name, data in files.items():
-                path = Path(aside) / name
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_bytes(data)
-            folder.mkdir(exist_ok=True)
-            for name in files:
-                if (folder / name).is_dir():
-                    raise UserError(f'cannot write "{folder / name}": it is a folder')
-            for name in files:
-                (folder / name).parent.mkdir(parents=True, exist_ok=True)
-                os.replace(Path(aside) / name, folder / name)
+        with exclusive(place):
+            _clear(place)
+            with tempfile.TemporaryDirectory(dir=place.parent, prefix=_stem(place)) as aside:
+                # An inner folder changes places, so that what it then holds goes with the outer one.
+                stage = Path(aside) / "new"
+                _fill(stage, files)
+                if not place.exists():
+                    os.rename(stage, place)
+                elif not (_holds_only(place, files) and _replace(place, stage)):
+                    _move(stage, place, folder, files)
     except OSError as e:
         raise UserError(f'cannot write into "{folder}": {e.strerror}') from None
+
+
+def _fill(stage: Path, files: Mapping[str, bytes]) -> None:
+    stage.mkdir()
+    for name, data in files.items():
+        (stage / name).parent.mkdir(parents=True, exist_ok=True)
+        (stage / name).write_bytes(data)
+
+
+def _replace(place: Path, stage: Path) -> bool:
+    """Let a folder that nobody stands in and its new content change places; False where that cannot be."""
+    here = Path.cwd()
+    if here == place or place in here.parents or os.path.ismount(place):
+        return False
+    stage.chmod(place.stat().st_mode & 0o7777)
+    return exchange(stage, place)
+
+
+def _move(stage: Path, place: Path, folder: Path, names: Iterable[str]) -> None:
+    """One file after another."""
+    for name in names:
+        if (place / name).is_dir():
+            raise UserError(f'cannot write "{folder / name}": it is a folder')
+    for name in names:
+        (place / name).parent.mkdir(parents=True, exist_ok=True)
+        os.replace(stage / name, place / name)
+
+
+def _holds_only(place: Path, names: Iterable[str]) -> bool:
+    """Whether nothing lies in a folder but plain files of these names; links stay where they are."""
+    found = [path for path in place.rglob("*") if path.is_symlink() or not path.is_dir()]
+    known = {place / name for name in names}
+    return all(path in known and path.is_file() and not path.is_symlink() for path in found)
+
+
+def _clear(place: Path) -> None:
+    """Remove what killed runs left beside the folder."""
+    for left in place.parent.glob(f"{glob.escape(_stem(place))}*"):
+        if left.is_dir() and not left.is_symlink():
+            shutil.rmtree(left)
+
+
+def _stem(place: Path) -> str:
+    return f".vair-{place.name}-"
 
 
 def _umask() -> int:

@@ -13,11 +13,9 @@ import os
 import random
 import shutil
 import signal
-import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -27,6 +25,7 @@ from codegen.vendor.exclusive import exclusive
 from codegen.vendor.install import install
 from codegen.vendor.lock import NAME, read_lock
 from codegen.vendor.state import UNFINISHED, states
+from conformance.unit.support.stopped import Stop, forked, stopping
 from conformance.unit.support.vendored import content, expected, other_plan, small_plan
 
 STEPS = ((os, "rename"), (os, "replace"), (shutil, "rmtree"), (installing, "exchange"), (Path, "write_text"))
@@ -34,32 +33,6 @@ MOST_STEPS = 60
 KILLS = [20, pytest.param(200, marks=pytest.mark.nightly)]
 LONGEST = 0.02
 """Seconds until a kill, at most: several updates take that long."""
-
-
-class Stop(BaseException):
-    """The process ends here; nothing catches this."""
-
-
-def stopping(monkeypatch: pytest.MonkeyPatch, at: int, *, after: bool) -> Callable[[], int]:
-    """Let the step of number `at` raise Stop, before or after it is done; returns what counts the steps."""
-    taken = 0
-
-    def counted(original: Callable[..., Any]) -> Callable[..., Any]:
-        def step(*args: Any, **kwargs: Any) -> Any:
-            nonlocal taken
-            taken += 1
-            if taken == at and not after:
-                raise Stop
-            result = original(*args, **kwargs)
-            if taken == at:
-                raise Stop
-            return result
-
-        return step
-
-    for owner, name in STEPS:
-        monkeypatch.setattr(owner, name, counted(getattr(owner, name)))
-    return lambda: taken
 
 
 @pytest.mark.parametrize("after", [False, True])
@@ -75,7 +48,7 @@ def test_every_step_leaves_one_set(shared: bool, after: bool, tmp_path: Path) ->
         for name, text in kept.items():
             (folder / name).write_text(text)
         with pytest.MonkeyPatch.context() as patch, contextlib.suppress(Stop):
-            steps = stopping(patch, at, after=after)
+            steps = stopping(patch, STEPS, at, after=after)
             install(folder, other)
         found = content(folder)
         whole = [{**expected(plan), **kept} for plan in (small, other)]
@@ -104,20 +77,6 @@ def test_a_finished_set_that_somebody_damaged_is_dropped_only_by_force(tmp_path:
         install(folder, small_plan())
     install(folder, small_plan(), force=True)
     assert content(tmp_path) == {f"v/{name}": text for name, text in expected(small_plan()).items()}
-
-
-@contextlib.contextmanager
-def forked(work: Callable[[], None]) -> Iterator[int]:
-    """A process that does this work and nothing of what this one still has to do."""
-    child = os.fork()
-    if child == 0:
-        try:
-            work()
-            os._exit(0)
-        except BaseException as e:
-            print(f"{type(e).__name__}: {e}", file=sys.stderr, flush=True)
-            os._exit(1)
-    yield child
 
 
 @pytest.mark.parametrize("count", KILLS)
