@@ -1,4 +1,5 @@
 """What a source writes without parentheses is emitted without: no grammar and no reader misses them there.
+Only a sign on the right of an operator gets some: a - (-b).
 
 Python, C, GLSL and WGSL read these expressions alike. That parentheses stand wherever one of them would read
 another tree is the business of test_printers.py.
@@ -29,15 +30,15 @@ BARE = {
         *("n % m + k", "n // m - k", "n * m % k"),
     ),
 }
+SIGNS = ("a + (-b)", "a - (-b)", "a * (-b)", "a / (-b)", "a + (-2.0)", "a - (-2.0)", "a * (-2.0)")
 SPELLED = {"and": "&&", "or": "||", "not ": "!", "//": "/"}
 
 
 @pytest.fixture(scope="module")
 def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, ir.Expr]:
     """Each expression as the front end reads it."""
-    texts = {
-        f"probe_{returns}_{i}": (returns, e) for returns, some in BARE.items() for i, e in enumerate(some)
-    }
+    written = {**BARE, "f32": (*BARE["f32"], *SIGNS)}
+    texts = {f"probe_{type_}_{i}": (type_, e) for type_, some in written.items() for i, e in enumerate(some)}
     source = "\n\n".join(f"def {f}({SIGNATURE}) -> {r}:\n    return {e}\n" for f, (r, e) in texts.items())
     library = library_of(tmp_path_factory.mktemp("bare"), source)
     found = {}
@@ -55,3 +56,11 @@ def test_no_parentheses_are_added(dialect: Dialect, text: str, printed: dict[str
     for ours, theirs in SPELLED.items():
         wanted = wanted.replace(ours, theirs)
     assert ExprPrinter(dialect).show(printed[text]) == wanted
+
+
+@pytest.mark.parametrize("text", SIGNS)
+@pytest.mark.parametrize("dialect", ONE_PER_TARGET, ids=dialect_id)
+def test_sign_on_the_right_stands_in_parentheses(
+    dialect: Dialect, text: str, printed: dict[str, ir.Expr]
+) -> None:
+    assert ExprPrinter(dialect).show(printed[text]).replace("f)", ")") == text

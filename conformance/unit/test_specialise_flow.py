@@ -76,6 +76,11 @@ CONTROL = {
         "    a = x\n    b = k\n    for i in range(9):\n        c = a * 0.5 + b\n        b = a - b * 0.5\n"
         "        a = c\n    return a - 2.0 * b\n"
     ),
+    "each from both in a loop": (
+        "    a = x\n    b = k\n    for i in range(5):\n        for j in range(6):\n"
+        "            c = a * 0.5 + b\n            b = a - b * 0.5\n            a = c\n        b = b + 1.0\n"
+        "    return a - 2.0 * b\n"
+    ),
     "return in a loop": (
         "    y = x\n    for i in range(12):\n        if y > 3.0:\n            return y * k\n"
         "        y = y + 0.5\n    return -y\n"
