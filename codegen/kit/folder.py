@@ -9,6 +9,8 @@ from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
 from codegen.errors import UserError
+from codegen.vendor.exchange import exchange
+from codegen.vendor.exclusive import exclusive
 
 LIST = "written-by-vair.txt"
 """Names every file of such a folder: only a folder that holds nothing else is replaced."""
@@ -52,12 +54,18 @@ class NewFolder:
             self._names.append(name)
 
     def place(self) -> None:
-        """Move the folder to its place; what Vair wrote there before is gone."""
+        """Move the folder to its place, one run at a time; what Vair wrote there before is gone.
+
+        Old and new change places in one step where the system has one: a run that is killed leaves either.
+        """
         self.add([(LIST, "".join(f"{name}\n" for name in sorted([*self._names, LIST])).encode())])
         try:
-            if self.folder.exists():
-                os.replace(self.folder, self._aside / "old")
-            os.replace(self._aside / "new", self.folder)
+            with exclusive(self.folder):
+                if self.folder.exists() and exchange(self._aside / "new", self.folder):
+                    return
+                if self.folder.exists():
+                    os.replace(self.folder, self._aside / "old")
+                os.replace(self._aside / "new", self.folder)
         except OSError as e:
             raise UserError(f'cannot write into "{self.folder}": {e.strerror}') from None
 

@@ -22,6 +22,8 @@ import pytest
 from codegen import files as writing
 from codegen.errors import UserError
 from codegen.files import write_folder
+from codegen.kit import folder as replacing
+from codegen.kit.folder import NewFolder
 from codegen.vendor.exclusive import exclusive
 from conformance.unit.support.stopped import Stop, forked, stopping
 from conformance.unit.support.vendored import content
@@ -49,6 +51,32 @@ def test_every_step_leaves_one_set(after: bool, tmp_path: Path) -> None:
             steps = stopping(patch, STEPS, at, after=after)
             write_folder(folder, SETS[1])
         assert content(folder) in [as_text(files) for files in SETS]
+        if steps() < at:
+            break
+    else:
+        pytest.fail(f"more than {MOST_STEPS} steps")
+    assert at > len(SETS[0])
+
+
+@pytest.mark.parametrize("after", [False, True])
+def test_a_folder_that_is_replaced_as_one_is_never_gone(after: bool, tmp_path: Path) -> None:
+    def written(folder: Path, files: dict[str, bytes]) -> None:
+        with NewFolder(folder) as new:
+            new.add(files.items())
+            new.place()
+
+    whole = []
+    for k, files in enumerate(SETS):
+        written(tmp_path / f"whole-{k}", files)
+        whole.append(content(tmp_path / f"whole-{k}"))
+    for at in range(1, MOST_STEPS):
+        folder = tmp_path / str(at) / "out"
+        folder.parent.mkdir()
+        written(folder, SETS[0])
+        with pytest.MonkeyPatch.context() as patch, contextlib.suppress(Stop):
+            steps = stopping(patch, [*STEPS, (replacing, "exchange")], at, after=after)
+            written(folder, SETS[1])
+        assert content(folder) in whole
         if steps() < at:
             break
     else:
