@@ -1,6 +1,7 @@
 """`python -m conformance.bench.compile`: what compiling an include with glslang costs.
 
-The functions with the longest includes are measured in every shell, forwards and backwards in rounds.
+The functions with the longest includes are measured in every shell, forwards and backwards in rounds; so
+is the whole library.
 --record keeps the result and the table of README.md.
 """
 
@@ -15,7 +16,7 @@ import click
 from codegen.library import load_library
 from conformance.bench.compile import record
 from conformance.bench.compile.shells import SHELLS
-from conformance.bench.compile.times import longest, measured
+from conformance.bench.compile.times import longest, measured, whole_library
 from conformance.bench.record import machine_data
 from targets.glsl.validate import MISSING_VALIDATOR
 from targets.packages import find_tool
@@ -37,8 +38,10 @@ def main(functions: tuple[str, ...], count: int, rounds: int, keep: bool) -> Non
         sys.exit(MISSING_VALIDATOR)
     library = load_library()
     names = list(functions) or longest(library, sorted(library.documented))[:count]
-    found = {}
+    found, everything = {}, {}
     for shell in SHELLS:
+        everything[shell] = whole_library(library, glslang, shell, rounds)
+        print(f"{shell.name}: all functions {everything[shell].median:.0f} ms", flush=True)
         found[shell] = measured(library, glslang, shell, names, rounds)
         for t in found[shell]:
             more = "" if t.more is None else f", one more {t.more:.0f}"
@@ -55,7 +58,7 @@ def main(functions: tuple[str, ...], count: int, rounds: int, keep: bool) -> Non
         ),
     }
     if keep:
-        record.keep(record.as_data(about, found))
+        record.keep(record.as_data(about, found, everything))
 
 
 if __name__ == "__main__":

@@ -26,8 +26,10 @@ def read() -> dict[str, Any]:
     return found
 
 
-def as_data(about: Mapping[str, Any], found: Mapping[Shell, Sequence[Times]]) -> dict[str, Any]:
-    """The measurement as data; times in ms, the dearest function first."""
+def as_data(
+    about: Mapping[str, Any], found: Mapping[Shell, Sequence[Times]], everything: Mapping[Shell, Taken]
+) -> dict[str, Any]:
+    """The measurement as data; times in ms, the dearest function first; everything: all functions."""
     rows = {
         shell.name: [
             {
@@ -41,7 +43,8 @@ def as_data(about: Mapping[str, Any], found: Mapping[Shell, Sequence[Times]]) ->
         ]
         for shell, times in found.items()
     }
-    return {**about, "shells": rows}
+    library = {shell.name: _rounded(taken) for shell, taken in everything.items()}
+    return {**about, "shells": rows, "library": library}
 
 
 def _rounded(taken: Taken) -> dict[str, float]:
@@ -58,19 +61,29 @@ def keep(data: Mapping[str, Any]) -> None:
 def table(data: Mapping[str, Any]) -> str:
     """One row for each shell: its empty shader, and the largest time of any function."""
     lines = [
-        "| include | shader | empty, ms | dearest function | whole, ms | above, ms | one more, ms |",
-        "|---|---|---:|---|---:|---:|---:|",
+        "| include | shader | empty, ms | dearest function | whole, ms | above, ms | one more, ms "
+        "| all functions, ms |",
+        "|---|---|---:|---|---:|---:|---:|---:|",
     ]
     for shell in SHELLS:
         if shell.name not in data["shells"]:
             continue
-        first = data["shells"][shell.name][0]
+        first, everything = data["shells"][shell.name][0], data["library"][shell.name]
         more = "" if first["more"] is None else f"{first['more']:.0f}"
         lines.append(
             f"| `{shell.dialect}` | {shell.name} | {_told(first['empty'])} | `{first['function']}` "
-            f"| {_told(first['whole'])} | {first['above']:.0f} | {more} |"
+            f"| {_told(first['whole'])} | {first['above']:.0f} | {more} | {_told(everything)} |"
         )
-    return "\n".join([*lines, "", f"{data['method']}. {data['date']}."])
+    return "\n".join([*lines, "", dearest(data["shells"]), "", f"{data['method']}. {data['date']}."])
+
+
+def dearest(shells: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
+    """A sentence on what an include adds at most, and where."""
+    rows = [(row["above"], row["function"], name) for name, rows in shells.items() for row in rows]
+    above, function, name = max(rows)
+    return (
+        f"The most that an include adds to the empty shader of its row: {above:.0f} ms, `{function}`, {name}."
+    )
 
 
 def _told(taken: Mapping[str, float]) -> str:

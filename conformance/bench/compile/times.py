@@ -73,6 +73,14 @@ def measured(library: Library, glslang: str, shell: Shell, names: Sequence[str],
     return [Times(name, taken[name, 1], taken[EMPTY, 1], taken.get((name, SEVERAL))) for name in names]
 
 
+def whole_library(library: Library, glslang: str, shell: Shell, rounds: int) -> Taken:
+    """The time of a shader that includes every documented function, in a shell."""
+    text = shell.text(emit(library, dialect("glsl", shell.dialect), sorted(library.documented)))
+    with tempfile.TemporaryDirectory() as scratch:
+        times = [_milliseconds(glslang, shell, Path(scratch), text, 1) for _ in range(rounds)]
+    return Taken(statistics.median(times), min(times))
+
+
 def _milliseconds(glslang: str, shell: Shell, place: Path, text: str, count: int) -> float:
     """Processor time of one process; RuntimeError where glslang refuses the text."""
     files = [str(place / f"{k}.{shell.stage}") for k in range(count)]

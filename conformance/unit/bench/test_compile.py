@@ -13,7 +13,7 @@ from codegen.emit.module import emit
 from codegen.library import load_library
 from conformance.bench.compile import record, times
 from conformance.bench.compile.shells import SHELLS, Shell
-from conformance.bench.compile.times import SEVERAL, Taken, Times, longest, measured
+from conformance.bench.compile.times import SEVERAL, Taken, Times, longest, measured, whole_library
 from targets.glsl.validate import MISSING_VALIDATOR
 from targets.packages import find_tool
 
@@ -35,6 +35,7 @@ def test_every_shell_compiles_with_an_include(shell: Shell) -> None:
     assert found.function == FUNCTION
     assert min(found.whole.median, found.empty.median) > 0.0
     assert (found.several is None) == bool(shell.options)
+    assert whole_library(load_library(), glslang, shell, 1).least > 0.0
 
 
 def test_a_shader_that_is_none_is_no_measurement(monkeypatch: pytest.MonkeyPatch) -> None:
