@@ -2,6 +2,7 @@
 
 Plan.
   text        every line of code belongs to a struct or a function; no #version, #extension, pragma, precision
+  size        the code of a whole model, with all that it calls, stays within what a person reads at a time
   names       no name that any file holds, whatever kind, is reserved on any target
   subsets     files of one function each, any of them in any order, compile in every dialect; so do files of
               several functions under one prefix where there is a preprocessor
@@ -40,6 +41,9 @@ ROOT = Path(__file__).parents[2]
 all_dialects = pytest.mark.parametrize("d", DIALECTS, ids=dialect_id)
 one_per_target = pytest.mark.parametrize("d", ONE_PER_TARGET, ids=dialect_id)
 GUARDED = [d for d in ONE_PER_TARGET if d.guard]
+MOST_LINES = 150
+"""Lines of code of fakefur_shade and all that it calls, without comments and include guards: a limit that the
+library sets itself, since hosts take these lines in."""
 SUBSET = 5
 """Functions of a drawn subset."""
 DRAWS = [
@@ -70,6 +74,13 @@ def test_all_code_belongs_to_definitions(d: Dialect) -> None:
     own = {DEFAULT_PREFIX + name for name in load_library().structs}
     assert starts <= {"struct", "typedef", "static", "fn", "highp", *types, *own}
     assert not re.search(r"#\s*(version|extension|pragma|include|undef)|^precision\b", text, re.MULTILINE)
+
+
+@all_dialects
+def test_a_whole_model_is_short(d: Dialect) -> None:
+    definitions = read_definitions(emit(load_library(), d, ["fakefur_shade"]))
+    assert definitions[-1].name == f"{DEFAULT_PREFIX}fakefur_shade" and len(definitions) > 10
+    assert sum(len(definition.code) for definition in definitions) <= MOST_LINES
 
 
 @all_dialects
