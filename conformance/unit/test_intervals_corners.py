@@ -5,6 +5,10 @@ Plan. Hand-made values, and functions of one line.
   cut            of atan2: on the negative x-axis either sign of pi
   zero           a dividend that is 0 although the promise begins above 0
   known lanes    of an integer that is an interval elsewhere stay exact
+  words          keep their number where both types have it; division by 0 warns of nothing
+  denormals      ends on the grid of float32 where a table flushes nothing
+  not finite     an input that is no number decides nothing, in no form of the loops
+  levels         a lookup between levels is off by what the table says of their weight
   bits of zero   either word, and every word where something else than a number may be
   anything       has infinite ends, also through absolute values and normalised vectors
   choices        bring the cause of the side that may be chosen; `and` and `or` are told apart
@@ -14,15 +18,30 @@ Plan. Hand-made values, and functions of one line.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from codegen.intervals import DEFAULT_TABLES, TABLES, arithmetic, elementary, load_table, permitted, whole
+from codegen.evaluate.textures import TextureMap
+from codegen.intervals import (
+    DEFAULT_TABLES,
+    TABLES,
+    arithmetic,
+    elementary,
+    geometry,
+    load_table,
+    logic,
+    lookups,
+    permitted,
+    whole,
+)
+from codegen.intervals.accuracy import Filter
 from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
+from codegen.intervals.interpreter import reinterpreted
 from codegen.intervals.values import Range, Truth, Whole, choose
 from conformance.unit.support.sources import library_of
 from targets import TARGETS
@@ -90,6 +109,72 @@ def test_bits_of_what_may_be_zero_or_no_number() -> None:
     assert pairs(whole.float_to_bits(x)) == [every, (one, two), (one + 2**31, two + 2**31), every]
     point = np.array([0.0, 1.0])
     assert pairs(whole.float_to_bits(Range(point, point))) == [every, (one, one)]
+
+
+def test_unsigned_words_up_to_the_largest_signed_one_keep_their_number() -> None:
+    most = 2**31 - 1
+    words = Whole(np.array([0, 5, 7]), np.array([most, most + 1, 9]), False)
+    found = reinterpreted(words, is_signed=True)
+    assert pairs(found) == [(0, most), (-(2**31), most), (7, 9)]
+
+
+def test_known_lanes_divide_by_zero_without_a_warning() -> None:
+    a, zero = np.array([6, 7]), np.array([0, 2])
+    for op, known in (("//", 3), ("%", 1)):
+        found = whole.binary(op, Whole(a, a, False), Whole(zero, zero, False))
+        assert found.low[1] == found.high[1] == known
+
+
+def test_ends_below_the_normal_numbers_lie_on_the_grid_where_nothing_is_flushed() -> None:
+    context = Context(replace(load_table("opencl"), flush=False), CauseBook(), 2)
+    step = float(np.finfo(np.float32).smallest_subnormal)
+    found = arithmetic.settle(context, *ends((1.25 * step, 1.75 * step), (-2.5 * step, 2.5 * step)), None)
+    assert pairs(found) == [(step, 2.0 * step), (-3.0 * step, 3.0 * step)]
+
+
+@pytest.mark.parametrize("op", ["<", "<=", ">", ">="])
+def test_input_that_is_not_finite_decides_no_comparison(op: str) -> None:
+    """Neither in numpy nor in a compiled loop, which sees its ends only."""
+    for loops in (False, True):
+        context = Context(load_table("wgsl"), CauseBook(), 2)
+        context.loops = loops
+        x = arithmetic.from_input(context, np.array([INF, -INF], np.float32))
+        found = logic.compare(context, op, x, Range(*ends((1.0, 1.0), (1.0, 1.0))))
+        assert found.true.all() and found.false.all()
+
+
+def test_short_vectors_have_a_direction_beside_one_without() -> None:
+    context = Context(load_table("opencl"), CauseBook(), 3)
+    x = Range(*ends((0.5, 0.5), (-INF, INF), (0.0, 0.0)), np.array([0, 1, 0], np.int16))
+    zero = Range(*ends((0.0, 0.0), (0.0, 0.0), (0.0, 0.0)))
+    with np.errstate(invalid="ignore"):
+        components = geometry.normalize(context, (x, zero, zero))
+    for found in components:
+        assert found.cause is not None
+        assert (found.cause > 0).tolist() == [False, True, True]
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_lookup_between_levels_is_off_by_the_weight_of_levels_alone(name: str) -> None:
+    """Level k holds the number k, so that a lookup gives the level itself."""
+    table = load_table(name)
+    accuracy = table.row("lookup_level").accuracy
+    assert isinstance(accuracy, Filter)
+    levels = tuple(np.full((size, size, 4), k, np.float32) for k, size in enumerate((8, 4, 2, 1)))
+    lod = np.array([0.0, 0.25, 1.0, 1.5, 2.75, 3.0])
+    half = np.full(lod.shape, 0.5)
+    found = lookups.lookup(
+        Context(table, CauseBook(), len(lod)),
+        TextureMap(levels),
+        Range(half, half),
+        Range(half, half),
+        Range(lod, lod),
+    )
+    slack = 2.0 * lookups.ARITHMETIC * len(levels)
+    for component in found:
+        for end, wanted in ((component.low, lod - accuracy.level), (component.high, lod + accuracy.level)):
+            np.testing.assert_allclose(end, np.clip(wanted, 0.0, 3.0), rtol=0.0, atol=slack)
+        assert (component.low <= lod).all() and (component.high >= lod).all()
 
 
 def test_absolute_value_of_anything_is_anything() -> None:
