@@ -85,6 +85,17 @@ def test_refusal_names_file_function_and_fault(sentence: str) -> None:
     assert str(caught.value).startswith(f"file: probe: {sentence}")
 
 
+def test_several_faults_are_told_in_the_order_of_the_keys() -> None:
+    odd = "\u00fc"
+    for entry, sentence in (
+        ({}, "a bound needs measure, domain, origin"),
+        ({**LEAST, "domain": odd, "origin": odd}, "domain is ASCII: it is emitted into shaders"),
+    ):
+        with pytest.raises(UserError) as caught:
+            read_bounds("file", {"probe": [entry]})
+        assert str(caught.value) == f"file: probe: {sentence}"
+
+
 @pytest.mark.parametrize("entries", [1.0, {"bound": 1.0}, [LEAST, 1.0], "text"])
 def test_bounds_are_lists_of_tables(entries: Any) -> None:
     with pytest.raises(UserError, match=r"file: probe: bounds are tables, written \[\[probe\]\]"):

@@ -22,6 +22,8 @@ from conformance.check.failure import FINITE, PERMITTED, WITHIN
 from conformance.check.interval import IntervalResult
 from conformance.check.result import BoundResult, FunctionResult
 
+INF = float("inf")
+
 
 def result(**fields: Any) -> FunctionResult:
     return FunctionResult("f", "glsl", "a driver", **fields)
@@ -108,3 +110,13 @@ def test_every_field_comes_back_from_json() -> None:
     again = FunctionResult.from_data(data)
     for field in dataclasses.fields(found):
         assert getattr(again, field.name) == getattr(found, field.name), field.name
+
+
+def test_infinite_figures_come_back_as_numbers() -> None:
+    found = result(
+        bounds=[BoundResult("b", 0.5, INF, INF, INF)],
+        permitted=IntervalResult("glsl", excess=INF),
+        accuracy=[Accuracy("ULP", 0.5, 8, INF, INF, INF, "an input")],
+    )
+    again = FunctionResult.from_data(json.loads(json.dumps(found.as_data(), allow_nan=False)))
+    assert (again.bounds, again.permitted, again.accuracy) == (found.bounds, found.permitted, found.accuracy)

@@ -116,13 +116,30 @@ def test_unsigned_words_up_to_the_largest_signed_one_keep_their_number() -> None
     words = Whole(np.array([0, 5, 7]), np.array([most, most + 1, 9]), False)
     found = reinterpreted(words, is_signed=True)
     assert pairs(found) == [(0, most), (-(2**31), most), (7, 9)]
+    signed = Whole(np.array([0, -1, 7]), np.array([5, 5, most]), True)
+    assert pairs(reinterpreted(signed, is_signed=False)) == [(0, 5), (0, EVERY_WORD), (7, most)]
 
 
-def test_known_lanes_divide_by_zero_without_a_warning() -> None:
-    a, zero = np.array([6, 7]), np.array([0, 2])
-    for op, known in (("//", 3), ("%", 1)):
-        found = whole.binary(op, Whole(a, a, False), Whole(zero, zero, False))
-        assert found.low[1] == found.high[1] == known
+def test_integer_over_zero_is_what_wgsl_makes_of_it() -> None:
+    """The dividend itself, and no remainder (WGSL 8.7, Arithmetic Expressions); others say nothing."""
+    a, b = np.array([7, 7]), np.array([0, 2])
+    for op, known in (("//", [7, 3]), ("%", [0, 1])):
+        found = whole.binary(op, Whole(a, a, False), Whole(b, b, False))
+        assert found.low.tolist() == found.high.tolist() == known
+
+
+@pytest.mark.parametrize("name", [n for n in TABLES if load_table(n).row("atan2").magnitude])
+def test_angle_of_what_is_outside_the_promise_tells_its_operand(name: str) -> None:
+    row = load_table(name).row("atan2")
+    values = {"x": np.array([1.0, 1.0]), "y": np.array([1.0, 1.0])}
+    for operand, (_, last) in row.magnitude.items():
+        beyond = {**values, operand: np.array([1.0, 2.0 ** (last + 1)])}
+        context = Context(load_table(name), CauseBook(), 2)
+        y, x = (Range(beyond[n], beyond[n].copy()) for n in ("y", "x"))
+        found = elementary.arc_tangent(context, y, x)
+        assert found.cause is not None
+        assert (found.cause > 0).tolist() == [False, True]
+        assert [cause.operand for cause in context.book.causes] == [operand]
 
 
 def test_ends_below_the_normal_numbers_lie_on_the_grid_where_nothing_is_flushed() -> None:
@@ -143,9 +160,12 @@ def test_input_that_is_not_finite_decides_no_comparison(op: str) -> None:
         assert found.true.all() and found.false.all()
 
 
-def test_short_vectors_have_a_direction_beside_one_without() -> None:
+@pytest.mark.parametrize("other", [0, 1])
+def test_short_vectors_have_a_direction_whatever_others_have(other: int) -> None:
     context = Context(load_table("opencl"), CauseBook(), 3)
-    x = Range(*ends((0.5, 0.5), (-INF, INF), (0.0, 0.0)), np.array([0, 1, 0], np.int16))
+    middle = (-INF, INF) if other else (0.0, 0.0)
+    codes = np.array([0, 1, 0], np.int16) if other else None
+    x = Range(*ends((0.5, 0.5), middle, (0.0, 0.0)), codes)
     zero = Range(*ends((0.0, 0.0), (0.0, 0.0), (0.0, 0.0)))
     with np.errstate(invalid="ignore"):
         components = geometry.normalize(context, (x, zero, zero))
