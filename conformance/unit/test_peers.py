@@ -4,11 +4,13 @@ Plan.
   library   every form is a variant of the function that PEERS names, and no part of the emitted library
   failures  each row of known_failures.toml shows up on every target and in the evaluator; on the same inputs
             the function of ours is within its bounds
+  answers   the tests that README.md names are there
   sources   an extra folder is a section of its own; a folder that is not there is refused
 """
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -40,6 +42,16 @@ def test_every_form_names_what_it_competes_with() -> None:
     assert found == peers.PEERS
     assert set(ROWS) == set(peers.PEERS)
     assert all(f.kind == "variant" for f in map(library.function, peers.PEERS))
+
+
+def test_named_answers_are_there() -> None:
+    text = (peers.FORMS.parent / "README.md").read_text(encoding="utf-8")
+    rows = [line for line in text.splitlines() if line.startswith("| ") and "::" in line]
+    named = [re.findall(r"`([\w/]+\.py)::(test_\w+)`", row) for row in rows]
+    assert len(rows) > 10 and all(named)
+    for file, name in {pair for pairs in named for pair in pairs}:
+        path = peers.FORMS.parents[1] / file
+        assert path.is_file() and f"\ndef {name}(" in path.read_text(encoding="utf-8"), f"{file}::{name}"
 
 
 def test_forms_are_no_part_of_the_emitted_library() -> None:
