@@ -128,6 +128,16 @@ def test_integer_over_zero_is_what_wgsl_makes_of_it() -> None:
         assert found.low.tolist() == found.high.tolist() == known
 
 
+@pytest.mark.parametrize("name", TABLES)
+def test_no_angle_has_both_sides_zero(name: str) -> None:
+    context = Context(load_table(name), CauseBook(), 2)
+    one_or_zero = np.array([1.0, 0.0])
+    found = elementary.arc_tangent(context, Range(one_or_zero, one_or_zero), Range(one_or_zero, one_or_zero))
+    assert found.cause is not None and found.cause[1] > 0
+    (told,) = {context.book.causes[code - 1] for code in found.cause[1:]}
+    assert (told.operand, told.reason) == ("y, x", "both may be 0")
+
+
 @pytest.mark.parametrize("name", [n for n in TABLES if load_table(n).row("atan2").magnitude])
 def test_angle_of_what_is_outside_the_promise_tells_its_operand(name: str) -> None:
     row = load_table(name).row("atan2")
