@@ -20,8 +20,13 @@ from typing import Any
 
 import pytest
 
+from codegen.backends import TARGETS, dialect
 from codegen.cli import run
+from codegen.emit.definition import read_definitions
+from codegen.emit.module import emit
+from codegen.guarantees import guarantees, phrase
 from codegen.library import load_library
+from codegen.passes.analysis.operations import operations_by_cost
 from conformance.pages import recorded
 from conformance.pages.site import GUIDES
 from conformance.pages.text import anchor, rendered
@@ -107,7 +112,16 @@ def test_a_page_says_what_is_known(site: Path, name: str) -> None:
     told += [b.describe() for b in library.bounds_of(name)] + [b.origin for b in library.bounds_of(name)]
     told += [v.name for v in library.variants(name)]
     told += [f"{d['driver']} {d['version']}" for d in recorded.on_drivers(library, f)]
+    surveyed = guarantees(library).get(name)
+    for table, guarantee in surveyed.tables.items() if surveyed else ():
+        told.append(phrase(table, guarantee, library.bounds_of(name)).partition(" by the ")[0])
+    told += [f"{count} {cost}" for cost, count in operations_by_cost(f, library).items()]
     assert [text for text in told if " ".join(text.split()) not in page.text] == []
+    # Words of code are coloured one by one.
+    letters = page.text.replace(" ", "")
+    for target in TARGETS:
+        code = read_definitions(emit(library, dialect(target), [name]))[-1].code
+        assert [line for line in code if line.replace(" ", "") not in letters] == []
 
 
 def test_recorded_figures_are_on_the_page(site: Path) -> None:
