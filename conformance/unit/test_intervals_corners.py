@@ -30,6 +30,7 @@ from codegen.intervals import (
     DEFAULT_TABLES,
     TABLES,
     arithmetic,
+    compiled,
     elementary,
     geometry,
     load_table,
@@ -42,6 +43,7 @@ from codegen.intervals.accuracy import Filter
 from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
 from codegen.intervals.interpreter import reinterpreted
+from codegen.intervals.permit import DEPTH
 from codegen.intervals.values import Range, Truth, Whole, choose
 from conformance.unit.support.sources import library_of
 from targets import TARGETS
@@ -57,6 +59,13 @@ def ends(*pairs: tuple[float, float]) -> tuple[Any, Any]:
 
 def pairs(found: Range | Whole) -> list[tuple[float, float]]:
     return list(zip(found.low.tolist(), found.high.tolist(), strict=True))
+
+
+def test_least_and_most_are_anything_only_where_an_operand_is() -> None:
+    a = Range(*ends((0.0, 1.0), (2.0, 3.0)), np.array([1, 0], np.int16))
+    b = Range(*ends((0.5, 4.0), (0.5, 4.0)))
+    assert pairs(arithmetic.smaller(a, b)) == [(-INF, INF), (0.5, 3.0)]
+    assert pairs(arithmetic.larger(a, b)) == [(-INF, INF), (2.0, 4.0)]
 
 
 def test_clamp_with_crossed_ends_may_give_either() -> None:
@@ -150,6 +159,12 @@ def test_angle_of_what_is_outside_the_promise_tells_its_operand(name: str) -> No
         assert found.cause is not None
         assert (found.cause > 0).tolist() == [False, True]
         assert [cause.operand for cause in context.book.causes] == [operand]
+    smallest = np.array([float(np.finfo(np.float32).tiny)])  # is a normal number
+    one = np.array([1.0])
+    found = elementary.arc_tangent(
+        Context(load_table(name), CauseBook(), 1), Range(smallest, smallest), Range(one, one)
+    )
+    assert found.cause is None
 
 
 def test_ends_below_the_normal_numbers_lie_on_the_grid_where_nothing_is_flushed() -> None:
@@ -238,6 +253,28 @@ def test_lane_with_too_many_ways_keeps_the_hull(tmp_path: Path) -> None:
     assert widths["once", 4000] < 0.5 and widths["once", 20000] < 0.5
     assert widths["twice", 4000] < 0.5
     assert widths["twice", 20000] == 1.0
+
+
+def test_lane_is_followed_through_as_many_forks_as_are_promised(tmp_path: Path) -> None:
+    """Each comparison leaves one way open; only the last one tells that 1 is not divided by 0."""
+    inputs = {"x": np.array([0.7], np.float32)}  # WGSL's sine is off by 2^-11, its multiple by 9
+    first = math.floor(math.sin(0.7) * 20000.0) - DEPTH // 2
+    steps = "".join(f"    y{k} = 1.0 if y >= {first + k}.0 else 2.0\n" for k in range(DEPTH - 1))
+    total = " + ".join(f"y{k}" for k in range(DEPTH - 1))
+    last = f"    s = 1.0 if y >= {first + DEPTH}.0 else -1.0\n"
+    text = f"def probe(x: X) -> f32:\n    y = sin(x) * 20000.0\n{steps}{last}    return {total} + 1.0 / s\n"
+    library = library_of(tmp_path, text)
+    guaranteed = [
+        permitted(library, "probe", inputs, "wgsl", follow_forks=follow).guaranteed.tolist()
+        for follow in (True, False)
+    ]
+    assert guaranteed == [[True], [False]]
+
+
+def test_no_loop_is_compiled_for_few_lanes_nor_without_numba(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert not compiled.wanted(1)
+    monkeypatch.setattr(compiled, "found", lambda: None)
+    assert not compiled.wanted(2**30)
 
 
 def test_chosen_side_brings_its_cause() -> None:

@@ -50,6 +50,19 @@ ROWS: dict[str, tuple[str, str, dict[str, Any], list[str]]] = {
             "f:3 ranges: max(dot(d, e), 0) -> dot(d, e); proven on every target: dot(d, e) in [0.249998, 1]",
         ],
     ),
+    "two facts of one expression": (
+        "d: D, e: D",
+        "min(max(dot(d, e), 0.0), 0.875)",
+        {"facts": [Fact("dot(d, e)", 0.25, 1.0), Fact("dot(e, d)", -1.0, 0.75)]},
+        [
+            "f:2 facts: dot(d, e) in [0.25, 1]; given",
+            "f:2 facts: dot(d, e) in [0.25, 0.75]; given",
+            "f:3 ranges: max(dot(d, e), 0) -> dot(d, e); "
+            "proven on every target: dot(d, e) in [0.249998, 0.750002]",
+            "f:3 ranges: min(dot(d, e), 0.875) -> dot(d, e); "
+            "proven on every target: dot(d, e) in [0.249998, 0.750002]",
+        ],
+    ),
     "range": (
         "a: X, b: X",
         "clamp(a, -2.0, 2.0) + clamp(b, 0.5, 2.0)",
@@ -153,6 +166,11 @@ def test_steps_of_control_flow_are_told(tmp_path: Path) -> None:
 def test_other_forms_of_calls_are_told(tmp_path: Path) -> None:
     found = specialise(library_of(tmp_path, FORMS), "f", variants={"root": "root_plain"})
     assert told(found) == ["f:12 variants: root -> root_plain; asked for"]
+
+
+def test_what_is_made_of_a_variant_is_a_function_of_its_own() -> None:
+    made = specialise(load_library(), "safe_normalize_dot").function
+    assert (made.name, made.kind, made.base) == ("safe_normalize_dot_specialised", "base", None)
 
 
 def test_multiplied_powers_are_told() -> None:
