@@ -1,13 +1,12 @@
 """The host programs of examples/hosts use the generated files as an engine would and draw the right sphere.
 
 Plan. Each program is built and run by the one command of its README in a process of its own; its picture is
-compared pixel by pixel. Texts that pass through other people's translators stay valid: SPIR-V and WGSL become
-HLSL, which glslang reads again, and MSL, for which there is no validator here.
+compared pixel by pixel. Their stages pass through other people's translators, as all functions do in
+test_translations.
 """
 
 import os
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -16,6 +15,7 @@ import pytest
 from conformance.picture.tolerances import tolerance
 from conformance.unit.support.drivers import need
 from conformance.unit.support.sphere import off, pixels, sphere
+from conformance.unit.support.translated import accepted_as_hlsl, ran
 from targets.packages import find_tool
 
 ROOT = Path(__file__).parents[2]
@@ -27,12 +27,6 @@ PROGRAMS = {
     "opencl": ("opencl", ()),
     "vulkan": ("wgsl", ("glslangValidator", "spirv-val")),
 }
-
-
-def ran(*command: str, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}{done.stderr}"
-    return done
 
 
 @pytest.mark.parametrize(
@@ -87,7 +81,7 @@ def test_spirv_cross_translates_the_stage(language: str, module: Path) -> None:
     ran("spirv-cross", *options, "--output", str(text), str(module))
     assert "vair_banks_shade" in text.read_text(encoding="utf-8")
     if language == "hlsl":
-        accepted_as_hlsl(text, "main")
+        accepted_as_hlsl(text, "frag", "main")
 
 
 @pytest.mark.parametrize("language", ["hlsl", "metal"])
@@ -103,14 +97,4 @@ def test_naga_translates_the_stages(language: str, tmp_path: Path) -> None:
     ran(os.fspath(find_tool("naga") or ""), str(source), str(text))
     assert "vair_banks_shade" in text.read_text(encoding="utf-8")
     if language == "hlsl":
-        accepted_as_hlsl(text, "fragment_")
-
-
-def accepted_as_hlsl(text: Path, entry: str) -> None:
-    """glslang's own reader of HLSL makes SPIR-V of it, which spirv-val accepts."""
-    if not find_tool("glslangValidator"):
-        pytest.skip("no glslangValidator is here to read HLSL")
-    again = text.with_suffix(".again.spv")
-    ran("glslangValidator", "-D", "-V", "-S", "frag", "-e", entry, "-o", str(again), str(text))
-    if find_tool("spirv-val"):
-        ran("spirv-val", str(again))
+        accepted_as_hlsl(text, "frag", "fragment_")
