@@ -15,7 +15,7 @@ from codegen.ir import nodes as ir
 from conformance.unit.support.dialects import ONE_PER_TARGET, dialect_id
 from conformance.unit.support.sources import library_of
 
-SIGNATURE = "a: X, b: X, c: X, p: bool, q: bool, n: u32, m: u32, k: u32"
+SIGNATURE = "a: X, b: X, c: X, p: bool, q: bool, n: u32, m: u32, o: u32, k: i32"
 BARE = {
     "f32": (
         *("a * b * c", "a / b * c", "a * b / c", "a + b - c", "a - b + c", "a * b + c", "a - b * c"),
@@ -26,18 +26,40 @@ BARE = {
         *("not p and q", "p and not q", "not p or not q", "p and a == b", "p or a == b", "n + m < n * m"),
     ),
     "u32": (
-        *("n & m & k", "n | m | k", "n ^ m ^ k", "~n & m", "~n | m", "~n ^ m", "~n << m", "~n >> m"),
-        *("n % m + k", "n // m - k", "n * m % k"),
+        *("n & m & o", "n | m | o", "n ^ m ^ o", "~n & m", "~n | m", "~n ^ m", "~n << m", "~n >> m"),
+        *("n % m + o", "n // m - o", "n * m % o"),
     ),
 }
 SIGNS = ("a + (-b)", "a - (-b)", "a * (-b)", "a / (-b)", "a + (-2.0)", "a - (-2.0)", "a * (-2.0)")
+CASTS = {
+    "f32": {
+        "a * f32(n)": ("a * float(n)", "a * f32(n)", "a * (float)n"),
+        "f32(n) * a": ("float(n) * a", "f32(n) * a", "(float)n * a"),
+        "a - f32(-k)": ("a - float(-k)", "a - f32(-k)", "a - (float)(-k)"),
+        "vec3(a, b, c).y - a": (
+            "vec3(a, b, c).y - a",
+            "vec3<f32>(a, b, c).y - a",
+            "((float3)(a, b, c)).y - a",
+        ),
+        "-f32(n)": ("-float(n)", "-f32(n)", "-((float)n)"),
+        "a * (b if p else c)": ("a * (p ? b : c)", "a * select(c, b, p)", "a * (p ? b : c)"),
+        "(a if p else b) * c": ("(p ? a : b) * c", "select(b, a, p) * c", "(p ? a : b) * c"),
+    },
+    "vec3": {
+        "a * vec3(b, c, a)": ("a * vec3(b, c, a)", "a * vec3<f32>(b, c, a)", "a * (float3)(b, c, a)"),
+        "vec3(b, c, a) * a": ("vec3(b, c, a) * a", "vec3<f32>(b, c, a) * a", "(float3)(b, c, a) * a"),
+    },
+    "u32": {"n << u32(a)": ("n << uint(a)", "n << u32(a)", "n << (uint)a")},
+}
+"""A cast may stand bare beside an operator, a choice only where it is a call."""
 SPELLED = {"and": "&&", "or": "||", "not ": "!", "//": "/"}
 
 
 @pytest.fixture(scope="module")
 def printed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, ir.Expr]:
     """Each expression as the front end reads it."""
-    written = {**BARE, "f32": (*BARE["f32"], *SIGNS)}
+    written = {type_: (*some, *CASTS.get(type_, ())) for type_, some in {**BARE, "vec3": ()}.items()}
+    written["f32"] += SIGNS
     texts = {f"probe_{type_}_{i}": (type_, e) for type_, some in written.items() for i, e in enumerate(some)}
     source = "\n\n".join(f"def {f}({SIGNATURE}) -> {r}:\n    return {e}\n" for f, (r, e) in texts.items())
     library = library_of(tmp_path_factory.mktemp("bare"), source)
@@ -64,3 +86,9 @@ def test_sign_on_the_right_stands_in_parentheses(
     dialect: Dialect, text: str, printed: dict[str, ir.Expr]
 ) -> None:
     assert ExprPrinter(dialect).show(printed[text]).replace("f)", ")") == text
+
+
+@pytest.mark.parametrize("text", [text for some in CASTS.values() for text in some])
+def test_casts_and_choices_stand_as_their_language_has_them(text: str, printed: dict[str, ir.Expr]) -> None:
+    wanted = next(some[text] for some in CASTS.values() if text in some)
+    assert tuple(ExprPrinter(dialect).show(printed[text]) for dialect in ONE_PER_TARGET) == wanted
