@@ -7,11 +7,11 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 from codegen.errors import UserError
 from codegen.vendor.exchange import exchange
-from codegen.vendor.exclusive import exclusive
 
 
 def write_text(path: Path, text: str) -> None:
@@ -59,7 +59,7 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     if not place.parent.is_dir():
         raise UserError(f'cannot make "{folder}": the folder "{place.parent}" does not exist')
     try:
-        with exclusive(place):
+        with alone(place):
             _clear(place)
             with tempfile.TemporaryDirectory(dir=place.parent, prefix=_stem(place)) as aside:
                 # An inner folder changes places, so that what it then holds goes with the outer one.
@@ -71,6 +71,20 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
                     _move(stage, place, folder, files)
     except OSError as e:
         raise UserError(f'cannot write into "{folder}": {e.strerror}') from None
+
+
+def alone(folder: Path) -> AbstractContextManager[None]:
+    """One run at a time in a folder, where the system can lock the one above it; Windows cannot."""
+    if os.name != "posix":
+        return nullcontext()
+    from codegen.vendor.exclusive import exclusive
+
+    return exclusive(folder)
+
+
+def swapped(a: Path, b: Path) -> bool:
+    """Let two folders change places in one step; False where the system has no such step."""
+    return os.name == "posix" and exchange(a, b)
 
 
 def _fill(stage: Path, files: Mapping[str, bytes]) -> None:
@@ -86,7 +100,7 @@ def _replace(place: Path, stage: Path) -> bool:
     if here == place or place in here.parents or os.path.ismount(place):
         return False
     stage.chmod(place.stat().st_mode & 0o7777)
-    return exchange(stage, place)
+    return swapped(stage, place)
 
 
 def _move(stage: Path, place: Path, folder: Path, names: Iterable[str]) -> None:

@@ -9,8 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
 from codegen.errors import UserError
-from codegen.vendor.exchange import exchange
-from codegen.vendor.exclusive import exclusive
+from codegen.files import alone, swapped
 
 LIST = "written-by-vair.txt"
 """Names every file of such a folder: only a folder that holds nothing else is replaced."""
@@ -60,8 +59,8 @@ class NewFolder:
         """
         self.add([(LIST, "".join(f"{name}\n" for name in sorted([*self._names, LIST])).encode())])
         try:
-            with exclusive(self.folder):
-                if self.folder.exists() and exchange(self._aside / "new", self.folder):
+            with alone(self.folder):
+                if self.folder.exists() and swapped(self._aside / "new", self.folder):
                     return
                 if self.folder.exists():
                     os.replace(self.folder, self._aside / "old")

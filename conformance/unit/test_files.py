@@ -22,7 +22,6 @@ import pytest
 from codegen import files as writing
 from codegen.errors import UserError
 from codegen.files import write_folder
-from codegen.kit import folder as replacing
 from codegen.kit.folder import NewFolder
 from codegen.vendor.exclusive import exclusive
 from conformance.unit.support.stopped import Stop, forked, stopping
@@ -74,7 +73,7 @@ def test_a_folder_that_is_replaced_as_one_is_never_gone(after: bool, tmp_path: P
         folder.parent.mkdir()
         written(folder, SETS[0])
         with pytest.MonkeyPatch.context() as patch, contextlib.suppress(Stop):
-            steps = stopping(patch, [*STEPS, (replacing, "exchange")], at, after=after)
+            steps = stopping(patch, STEPS, at, after=after)
             written(folder, SETS[1])
         assert content(folder) in whole
         if steps() < at:
@@ -156,6 +155,16 @@ def test_links_are_left_and_folders_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r'cannot write ".*/out/part": it is a folder'):
         write_folder(folder, {"0.txt": b"new", "part": b"new"})
     assert (folder / "0.txt").read_text() == "a 0"
+
+
+def test_a_system_without_locks_and_exchange_writes_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(writing, "alone", lambda folder: contextlib.nullcontext())
+    monkeypatch.setattr(writing, "swapped", lambda a, b: False)
+    for files in SETS:
+        write_folder(tmp_path / "out", files)
+        assert content(tmp_path) == {f"out/{name}": text for name, text in as_text(files).items()}
 
 
 def test_a_mode_stays(tmp_path: Path) -> None:
