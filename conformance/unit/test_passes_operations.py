@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from codegen.library import Library
-from codegen.passes.analysis.operations import CLASSES, operations, operations_by_cost
+from codegen.passes.analysis.operations import CLASSES, WEIGHTS, operations, operations_by_cost
 from conformance.unit.support.sources import library_of
 
 COUNTS = {
@@ -45,6 +45,10 @@ BRANCH = """    found = x
 
 def library(folder: Path, body: str, before: str = "") -> Library:
     return library_of(folder, f"{before}def probe(x: X, y: X, v: V) -> f32:\n{body}")
+
+
+def test_every_class_has_its_weight() -> None:
+    assert set(WEIGHTS) == set(CLASSES)
 
 
 def full(counts: dict[str, int]) -> dict[str, int]:
