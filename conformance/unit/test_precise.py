@@ -17,6 +17,7 @@ from codegen.emit.dialect import with_precise
 from codegen.emit.module import emit
 from codegen.errors import UserError
 from codegen.ir import nodes as ir
+from codegen.ir.types import F32
 from codegen.ir.unit import Unit
 from codegen.library import load_library
 from codegen.passes.printing.precise import STEM, name_results
@@ -43,6 +44,19 @@ def test_name_that_is_taken_is_not_taken_again() -> None:
     lets = [s.name for s in ir.statements(from_taken.body) if isinstance(s, ir.Let)]
     assert len(lets) == len(set(lets))
     assert f"{STEM}_" in lets
+
+
+def test_name_of_a_parameter_or_of_a_loop_is_not_taken() -> None:
+    one = ir.Const(F32, 1.0)
+    sum_ = ir.Return(ir.Binary(F32, "+", one, one))
+    like = load_library().function("sin_angle")
+    for parameters, body in (
+        ((ir.Parameter(STEM, F32, None),), (ir.Let("other", one), sum_)),
+        ((), (ir.For(STEM, 0, 3, (), 1), sum_)),
+    ):
+        f = replace(like, parameters=parameters, body=body)
+        (made,) = name_results(Unit((f,), ())).functions
+        assert [s.name for s in made.body if isinstance(s, ir.Let)][-1] == f"{STEM}_"
 
 
 @pytest.mark.parametrize("name", [d.name for d in dialects_of("glsl").values() if d.precise])
