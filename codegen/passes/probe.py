@@ -6,7 +6,7 @@ All questions share their values, so that what does not depend on what is asked 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from codegen.ir import nodes as ir
@@ -15,12 +15,13 @@ from codegen.library import Library
 from codegen.passes.analysis.operations import operations
 from codegen.passes.analysis.ranges import Ranges
 from codegen.passes.inline import Inliner, Scope
-from codegen.passes.placement.dead import pruned, used_parameters
-from codegen.passes.placement.schedule import statements
-from codegen.passes.specialise import EXACT_KINDS, exact_rules, parameter_names, specialise
-from codegen.passes.ssa.flow import roots
-from codegen.passes.ssa.values import Value, Values, leaves
+from codegen.passes.placement.counted import operations_of
+from codegen.passes.placement.dead import pruned
+from codegen.passes.specialise import EXACT_KINDS, exact_rules, specialise
+from codegen.passes.ssa.values import Value, Values
 from codegen.passes.subject import Subject
+
+Known = dict[tuple[int, ...], tuple[Value, list[Value]]]
 
 
 def operations_left(
@@ -28,27 +29,29 @@ def operations_left(
 ) -> list[int]:
     """The operations that `specialise` leaves for each set of constants, path -> value."""
     shared = _Shared(library, library.function(name), unroll)
-    return [shared.operations(constants) for constants in ({}, *questions)][1:]
+    return [shared.operations(constants) for constants in questions]
 
 
 @dataclass
 class _Recalling(Inliner):
-    """Follows a function without structs again: a statement over the same values has the same value.
+    """Follows a function again: a statement over the same values has the same value.
 
-    known  a statement's expression and the values of its variables, by their ids -> its value
+    known  a statement's expression and the values of its variables, by their ids -> its value, and those
+           values: structs are made anew each time, and the id of one that is gone may be another's
     names  of the variables of an expression, by its id
     """
 
-    known: dict[tuple[int, ...], Value] = field(default_factory=dict)
+    known: Known = field(default_factory=dict)
     names: dict[int, tuple[str, ...]] = field(default_factory=dict)
 
     def whole(self, e: ir.Expr, scope: Scope) -> Value:
         if id(e) not in self.names:
             self.names[id(e)] = variables(e)
-        key = (id(e), *[id(scope[name]) for name in self.names[id(e)]])
+        of = [scope[name] for name in self.names[id(e)]]
+        key = (id(e), *map(id, of))
         if key not in self.known:
-            self.known[key] = self.expr(e, scope)
-        return self.known[key]
+            self.known[key] = self.expr(e, scope), of
+        return self.known[key][0]
 
 
 class _Shared:
@@ -61,7 +64,7 @@ class _Shared:
         """Values of which nothing is known yet."""
         values = Values(function=self.function.name, line=self.function.place.line)
         values.simplify_by(exact_rules(Ranges(values), frozenset(EXACT_KINDS)))
-        self.known: dict[tuple[int, ...], Value] = {}
+        self.known: Known = {}
         return values
 
     def operations(self, constants: Mapping[str, Any]) -> int:
@@ -76,7 +79,4 @@ class _Shared:
             self.values = self.fresh()
             made = specialise(self.library, function.name, constants, new_name="probe", unroll=self.unroll)
             return sum(operations(made.function).values())
-        assert flow.result is not None
-        left = used_parameters(values, [*roots(flow.items), *leaves(flow.result)])
-        body, _ = statements(values, flow, function.returns, parameter_names(left, function))
-        return sum(operations(replace(function, body=body)).values())
+        return operations_of(values, flow, function.returns)

@@ -49,12 +49,13 @@ def _counted(
     counts: Counter[str] = Counter()
 
     def tree(e: ir.Expr, times: int) -> None:
-        for x in ir.walk(e):
-            found = of(x)
-            if isinstance(x, ir.Call) and library is not None:
-                found = _counted(library.function(x.function), library, of)
-            for kind, n in found.items():
+        own, calls = _whole(e, of)
+        for name in calls if library is not None else ():
+            assert library is not None
+            for kind, n in _counted(library.function(name), library, of).items():
                 counts[kind] += n * times
+        for kind, n in own.items():
+            counts[kind] += n * times
 
     def block(body: tuple[ir.Stmt, ...], times: int) -> None:
         for s in body:
@@ -73,6 +74,21 @@ def _counted(
     return counts
 
 
+@functools.lru_cache(16_384)
+def _whole(
+    e: ir.Expr, of: Callable[[ir.Expr], Mapping[str, int]]
+) -> tuple[Mapping[str, int], tuple[str, ...]]:
+    """The sum of what `of` says of an expression's nodes, and the functions that it calls."""
+    counts: Counter[str] = Counter()
+    calls: list[str] = []
+    for x in ir.walk(e):
+        if isinstance(x, ir.Call):
+            calls.append(x.function)
+        for kind, n in of(x).items():
+            counts[kind] += n
+    return counts, tuple(calls)
+
+
 def expression_operations(e: ir.Expr) -> Mapping[str, int]:
     """Operations by class of one node, its operands left out."""
     if isinstance(e, ir.Select):
@@ -80,6 +96,18 @@ def expression_operations(e: ir.Expr) -> Mapping[str, int]:
     if not isinstance(e, ir.Unary | ir.Binary | ir.Builtin):
         return {}
     return _by_class(e.op, isinstance(e, ir.Builtin), _width(e))
+
+
+def number_of_operations(e: ir.Expr) -> int:
+    """Operations of one node, its operands left out, whatever their class."""
+    if isinstance(e, ir.Binary | ir.Builtin | ir.Unary):
+        return _number(e.op, isinstance(e, ir.Builtin), _width(e))
+    return sum(expression_operations(e).values())
+
+
+@functools.cache
+def _number(op: str, is_builtin: bool, width: int) -> int:
+    return sum(_by_class(op, is_builtin, width).values())
 
 
 @functools.cache
@@ -106,4 +134,8 @@ def _registered_operations(e: ir.Expr) -> Mapping[str, int]:
 
 def _width(e: ir.Expr) -> int:
     """Components of the widest of the node and its operands."""
-    return max(t.size if isinstance(t, Vector) else 1 for t in (e.type, *(c.type for c in ir.children(e))))
+    widest = e.type.size if isinstance(e.type, Vector) else 1
+    for c in ir.children(e):
+        if isinstance(c.type, Vector) and c.type.size > widest:
+            widest = c.type.size
+    return widest

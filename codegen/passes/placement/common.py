@@ -9,13 +9,14 @@ text readable; other names say what is computed.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 
 from codegen.ir import nodes as ir
 from codegen.ir.types import Array, Vector
 from codegen.names import reserved
-from codegen.passes.analysis.operations import expression_operations
-from codegen.passes.placement.regions import Placement, is_trivial
+from codegen.passes.analysis.operations import number_of_operations
+from codegen.passes.placement.regions import Placement, Region, is_trivial
+from codegen.passes.ssa.flow import Loop
 from codegen.passes.ssa.values import FIELD, LOCAL, Hint, Values
 
 WORTH_A_NAME = 3
@@ -33,20 +34,21 @@ _WORDS = {
 }  # fmt: skip
 
 
-def named_values(values: Values, placement: Placement, forced: Collection[int] = ()) -> set[int]:
-    """The ids of values that become locals; `forced` ones do in any case."""
-    named: set[int] = set(forced)
+def named_values(values: Values, placement: Placement) -> set[int]:
+    """The ids of values that become locals."""
+    named = set(_handed_on(placement.root))
     size: dict[int, int] = {}
+    given = {id(e) for e, _ in placement.used}
     for e in reversed(placement.order):
         inner = sum(size[id(c)] for c in ir.children(e) if id(c) not in named)
-        size[id(e)] = inner + sum(expression_operations(e).values())
+        size[id(e)] = inner + number_of_operations(e)
         if is_trivial(e) or isinstance(e, ir.Construct):
             shared = not is_trivial(e) and placement.uses[id(e)] > 1 and isinstance(e.type, Vector)
             if shared or (isinstance(e, ir.Construct) and isinstance(e.type, Array)):
                 named.add(id(e))
             continue
         moved = id(e) in placement.moved
-        assigned = id(e) in placement.assigned
+        assigned = id(e) in given
         hint = values.hints.get(id(e), Hint(0, ""))
         least = WORTH_A_NAME if hint.rank >= LOCAL else 2 * WORTH_A_NAME
         readable = hint.rank >= FIELD and size[id(e)] >= least
@@ -54,6 +56,16 @@ def named_values(values: Values, placement: Placement, forced: Collection[int] =
         if placement.uses[id(e)] > 1 or moved or long:
             named.add(id(e))
     return named
+
+
+def _handed_on(region: Region) -> Iterator[int]:
+    """What a loop hands on is computed before any of it is assigned: one may need another."""
+    for item in region.items:
+        if isinstance(item, Loop) and len(item.carried) > 1:
+            following = [c.following for c in item.carried]
+            yield from (id(e) for e in following if not isinstance(e, ir.Const | ir.Var))
+        for inner in region.inner[id(item)]:
+            yield from _handed_on(inner)
 
 
 class Names:

@@ -40,7 +40,7 @@ class Placement:
     uses      id of a value -> number of places that use it; what costs nothing counts for its operands
     order     every value, those that use others first
     moved     ids of values that are computed outside the regions that use them
-    assigned  ids of values that a branch, a loop or the function gives as they are
+    used      values that a branch, a loop or the function gives as they are, with the region that does
     """
 
     root: Region
@@ -48,7 +48,7 @@ class Placement:
     uses: dict[int, int]
     order: list[ir.Expr]
     moved: set[int]
-    assigned: set[int]
+    used: list[tuple[ir.Expr, Region]]
 
 
 def place(flow: Flow, result: ir.Expr) -> Placement:
@@ -73,7 +73,7 @@ def place(flow: Flow, result: ir.Expr) -> Placement:
         for child in ir.children(e):
             use(child, home, times)
     moved = {key for key, home in homes.items() if home is not wanted[key]}
-    return Placement(root, homes, uses, order, moved, {id(e) for e, _ in used})
+    return Placement(root, homes, uses, order, moved, used)
 
 
 def is_trivial(e: ir.Expr) -> bool:
@@ -147,13 +147,17 @@ def _available(order: list[ir.Expr], bound: dict[str, Region], root: Region) -> 
     """The outermost region in which all leaves of a value are known."""
     known: dict[int, Region] = {}
     for e in reversed(order):
-        here = [bound.get(e.name, root)] if isinstance(e, ir.Var) else []
-        here += [known[id(c)] for c in ir.children(e)]
-        known[id(e)] = max(here, key=lambda region: region.depth, default=root)
+        here = bound.get(e.name, root) if isinstance(e, ir.Var) else root
+        for c in ir.children(e):
+            if known[id(c)].depth > here.depth:
+                here = known[id(c)]
+        known[id(e)] = here
     return known
 
 
 def _common(a: Region, b: Region) -> Region:
+    if a is b:
+        return a
     around = set(map(id, a.ancestors()))
     return next(region for region in b.ancestors() if id(region) in around)
 

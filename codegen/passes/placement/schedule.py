@@ -34,22 +34,10 @@ class _Writer:
         self.placement = placement
         self.names = Names(parameters.values())
         self.variables = dict(parameters)
-        self.forced: set[int] = set()
-        self.force_swapped(placement.root)
-        self.named = named_values(values, placement, self.forced)
+        self.named = named_values(values, placement)
         self.locals: dict[int, str] = {}
         self.line = line
         self.origins: Origins = {}
-
-    def force_swapped(self, region: Region) -> None:
-        """What a loop hands on is computed before any of it is assigned: one may need another."""
-        for item in region.items:
-            if isinstance(item, Loop) and len(item.carried) > 1:
-                self.forced |= {
-                    id(c.following) for c in item.carried if not isinstance(c.following, ir.Const | ir.Var)
-                }
-            for inner in region.inner[id(item)]:
-                self.force_swapped(inner)
 
     def body(self, items: list[Item], result: ir.Expr) -> tuple[ir.Stmt, ...]:
         out: list[ir.Stmt] = []

@@ -22,7 +22,9 @@ def add_prefix(unit: Unit, prefix: str) -> Unit:
         return Struct(prefix + t.name, tuple(replace(f, type=type_(f.type)) for f in t.fields))
 
     def node(e: ir.Expr) -> ir.Expr:
-        e = replace(e, type=type_(e.type))
+        new = type_(e.type)
+        if new is not e.type:
+            e = replace(e, type=new)
         return replace(e, function=prefix + e.function) if isinstance(e, ir.Call) else e
 
     def function(f: ir.Function) -> ir.Function:

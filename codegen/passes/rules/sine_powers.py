@@ -84,5 +84,6 @@ def _sine_square(values: Values, n: ir.Expr, w: ir.Expr) -> ir.Expr:
 
 
 def _said(power: int) -> str:
-    products = multiplications(power // 2) if power > 1 else 0
+    half = power // 2
+    products = multiplications(half) + power % 2 if half else 0
     return f"{products} multiplications" + (" and a root" if power % 2 else "")

@@ -9,7 +9,6 @@ neighbour may be taken. Constants never cancel: (x + c) - c may be there to roun
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -19,7 +18,7 @@ import numpy as np
 from codegen.intervals.numbers import LARGEST, SMALLEST
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32, Scalar, Vector
-from codegen.passes.analysis.operations import expression_operations
+from codegen.passes.analysis.operations import number_of_operations
 from codegen.passes.ssa.values import Rewrite, Rule, Values, constant_components
 
 NAME = "sums"
@@ -30,7 +29,9 @@ DEEPEST = 6
 """Operations inside each other that are multiplied out."""
 
 Monomial = tuple[int, ...]
-Polynomial = dict[Monomial, Fraction]
+Factor = int | Fraction
+"""Exact; whole numbers as integers, whose arithmetic is much faster."""
+Polynomial = dict[Monomial, Factor]
 """Products of values (their numbers in order of first sight, sorted) with their exact factors.
 
 Not their ids: products are rebuilt in this order, and text must not depend on where values lie in memory.
@@ -69,9 +70,6 @@ def _subtracts(e: ir.Expr, depth: int) -> bool:
             return any(x < 0 for x in constant_components(e) or ())
 
 
-_ZERO = Fraction(0)
-
-
 @dataclass(frozen=True)
 class _Sum:
     """A sum of products, and whether a product of variables cancelled on the way."""
@@ -99,11 +97,11 @@ class _Expansion:
         numbers = constant_components(e)
         if numbers is not None:
             same = all(x == numbers[0] for x in numbers)
-            return _Sum({(): Fraction(float(numbers[0]))}) if same else self.atom(e)
+            return _Sum({(): _exact(float(numbers[0]))}) if same else self.atom(e)
         if depth > 0:
             match e:
                 case ir.Unary(op="negate"):
-                    return _scaled(self.of(e.operand, depth - 1), Fraction(-1))
+                    return _scaled(self.of(e.operand, depth - 1), -1)
                 case ir.Binary(op="+" | "-" as op):
                     return _added(self.of(e.left, depth - 1), self.of(e.right, depth - 1), op)
                 case ir.Binary(op="*"):
@@ -113,7 +111,11 @@ class _Expansion:
     def atom(self, e: ir.Expr) -> _Sum:
         number = self._numbers.setdefault(id(e), len(self._numbers))
         self.atoms[number] = e
-        return _Sum({(number,): Fraction(1)})
+        return _Sum({(number,): 1})
+
+
+def _exact(number: float) -> Factor:
+    return int(number) if number.is_integer() else Fraction(number)
 
 
 def _added(a: _Sum | None, b: _Sum | None, op: str) -> _Sum | None:
@@ -121,7 +123,7 @@ def _added(a: _Sum | None, b: _Sum | None, op: str) -> _Sum | None:
         return None
     total, cancels = dict(a.terms), a.cancels or b.cancels
     for monomial, factor in b.terms.items():
-        added = total.get(monomial, _ZERO) + (factor if op == "+" else -factor)
+        added = total.get(monomial, 0) + (factor if op == "+" else -factor)
         cancels = cancels or (added == 0 and factor != 0 and bool(monomial))
         total[monomial] = added
     return _Sum(total, cancels) if len(total) <= MOST_TERMS else None
@@ -134,23 +136,23 @@ def _multiplied(a: _Sum | None, b: _Sum | None) -> _Sum | None:
     for p, x in a.terms.items():
         for q, y in b.terms.items():
             monomial = tuple(sorted((*p, *q)))
-            total[monomial] = total.get(monomial, _ZERO) + x * y
+            total[monomial] = total.get(monomial, 0) + x * y
     return _Sum(total, a.cancels or b.cancels)
 
 
-def _scaled(a: _Sum | None, by: Fraction) -> _Sum | None:
+def _scaled(a: _Sum | None, by: Factor) -> _Sum | None:
     if a is None:
         return None
     return _Sum({monomial: factor * by for monomial, factor in a.terms.items()}, a.cancels)
 
 
 def _rebuilt(
-    values: Values, left: Mapping[Monomial, Fraction], atoms: Mapping[int, ir.Expr], like: ir.Expr
+    values: Values, left: Mapping[Monomial, Factor], atoms: Mapping[int, ir.Expr], like: ir.Expr
 ) -> ir.Expr | None:
     """The sum of what is left, positive terms first; None where a factor is no float32."""
     total: ir.Expr | None = None
     for monomial, factor in sorted(left.items(), key=lambda item: item[1] < 0):
-        term = _term(values, monomial, abs(factor), atoms)
+        term = _term(values, monomial, factor if factor > 0 else -factor, atoms)
         if term is None:
             return None
         if total is None:
@@ -164,9 +166,7 @@ def _rebuilt(
     return values.splat(total, like.type)
 
 
-def _term(
-    values: Values, monomial: Monomial, factor: Fraction, atoms: Mapping[int, ir.Expr]
-) -> ir.Expr | None:
+def _term(values: Values, monomial: Monomial, factor: Factor, atoms: Mapping[int, ir.Expr]) -> ir.Expr | None:
     number = float(factor)
     if Fraction(float(np.float32(number))) != factor or not SMALLEST <= number <= LARGEST:
         return None
@@ -192,6 +192,6 @@ def _cost(e: ir.Expr) -> int:
         x = waiting.pop()
         if id(x) not in seen:
             seen.add(id(x))
-            total += math.ceil(sum(expression_operations(x).values()))
+            total += number_of_operations(x)
             waiting += ir.children(x)
     return total
