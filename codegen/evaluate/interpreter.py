@@ -24,6 +24,7 @@ from codegen.evaluate.arrays import (
     stacked,
 )
 from codegen.evaluate.arrays import arithmetic as find_arithmetic
+from codegen.evaluate.blocks import block_by_block
 from codegen.evaluate.loops import Together, joined, lanes, together
 from codegen.evaluate.memory import Memory
 from codegen.evaluate.textures import as_map
@@ -66,8 +67,13 @@ def evaluate(
     else:
         arrays, count = memory.inputs(function, inputs, chosen)
     arrays = with_edges(function, arrays)
+
+    def run(some: dict[str, Value], lanes: int) -> Value:
+        return Frame(find, chosen, function, some, lanes, memory).run()
+
     with np.errstate(all="ignore"):  # lanes that a branch does not take may overflow or divide by zero
-        return row_by_row(Frame(find, chosen, function, arrays, count, memory).run())
+        whole = memory is not None or chosen.floats is np.object_
+        return row_by_row(run(arrays, count) if whole else block_by_block(run, arrays, count))
 
 
 def with_edges(function: ir.Function, arrays: dict[str, Value]) -> dict[str, Value]:
@@ -206,22 +212,26 @@ class Frame:
 
     def whole(self, e: ir.Expr) -> Value:
         """The value of a statement's expression or of an argument; remembered where there is a memory."""
-        if self.memory is None or isinstance(e, ir.Var):
+        memory, scope = self.memory, self.scope
+        if type(e) is ir.Var:
+            return scope[e.name]
+        if memory is None:
             return self.expr(e)
-        if isinstance(e, ir.Call):
+        if type(e) is ir.Call:
             return self.call(e)
-        known = self.memory.prepared(e)
-        scope = self.scope
-        made = {id(call): self.call(call) for call in known.calls} if known.calls else {}
-
-        def make() -> Value:
+        known = memory.prepared(e)
+        of = [scope[x] for x in known.variables]
+        made: dict[int, Value] = {}
+        if known.calls:
+            made = {id(call): self.call(call) for call in known.calls}
+            of += made.values()
+        key = (known.number, self.count, *map(id, of))
+        value = memory.find(key)
+        if value is None:
             self.made = made
-            value = self.expr(e)
+            value = memory.keep(key, self.expr(e), of)
             self.made = {}
-            return value
-
-        of = [*[scope[x] for x in known.variables], *made.values()]
-        return self.memory.value(known.number, of, make, self.count)
+        return value
 
     def array(self, e: ir.Expr) -> Array:
         value = self.expr(e)

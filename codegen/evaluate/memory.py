@@ -15,11 +15,16 @@ from typing import Any
 import numpy as np
 
 from codegen.evaluate.arrays import Arithmetic, Value, convert_inputs
+from codegen.evaluate.pages import Pages
 from codegen.ir import nodes as ir
 from codegen.ir.content import variables
 
 MOST = 256 * 2**20
 """Bytes of values that are remembered; then all are forgotten."""
+
+Key = tuple[object, ...]
+"""What a value is known by: the number of an expression, or the name of a function; lanes; and the ids of the
+values that it is made of."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +47,8 @@ class Memory:
     def __init__(self, most: int = MOST) -> None:
         self._most = most
         self._held = 0
-        self._values: dict[tuple[object, ...], tuple[Value, list[Value]]] = {}
+        self._pages = Pages()
+        self._values: dict[Key, tuple[Value, list[Value]]] = {}
         self._inputs: dict[tuple[object, ...], tuple[Value, Any, int]] = {}
         self._prepared: dict[int, Prepared] = {}
         self._numbers: dict[ir.Expr, int] = {}
@@ -70,19 +76,28 @@ class Memory:
             found = self._prepared[id(e)] = Prepared(number, variables(e), tuple(outer_calls(e)), e)
         return found
 
-    def value(self, what: int | str, of: list[Value], make: Callable[[], Value], lanes: int = 0) -> Value:
-        """The value of an expression, by its number, over those of its variables and calls; or of a call, by
-        its function's name, over its own; in so many lanes."""
-        key = (what, lanes, *map(id, of))
+    def find(self, key: Key) -> Value | None:
+        """What is remembered under a key."""
         known = self._values.get(key)
-        if known is None:
-            made = make()
-            if self._held > self._most:
-                self._values.clear()
-                self._held = 0
-            self._held += _bytes(made)
-            known = self._values[key] = made, of
-        return known[0]
+        return None if known is None else known[0]
+
+    def keep(self, key: Key, made: Value, of: list[Value]) -> Value:
+        """Remember a value that was made of others; gives it as it is kept."""
+        if self._held > self._most:
+            self._values.clear()
+            self._held = 0
+        self._held += _bytes(made)
+        if isinstance(made, np.ndarray):
+            made = self._pages.moved(made)
+        self._values[key] = made, of
+        return made
+
+    def value(self, what: str, of: list[Value], make: Callable[[], Value], lanes: int = 0) -> Value:
+        """The value of a call, by its function's name, over those of its arguments, in so many lanes; or of
+        anything else that a name and values tell."""
+        key = (what, lanes, *map(id, of))
+        found = self.find(key)
+        return self.keep(key, make(), of) if found is None else found
 
 
 def _bytes(value: Value) -> int:
