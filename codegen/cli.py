@@ -39,6 +39,9 @@ COMMANDS = {
 }
 """Subcommand -> where it lives; what runs on devices lives in conformance and is loaded by name."""
 
+ONE_THREAD = frozenset({"scene"})
+"""Subcommands whose processes share the cores: threads of NumPy's BLAS would wait on them at full speed."""
+
 
 def documentation(name: str) -> str:
     """What a subcommand says of itself; its file is read, not imported."""
@@ -59,6 +62,8 @@ class LazyGroup(click.Group):
         if cmd_name not in COMMANDS:
             return None
         module, attribute = COMMANDS[cmd_name].split(":")
+        if cmd_name in ONE_THREAD:
+            os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when NumPy is imported
         collects = gc.isenabled()
         gc.disable()  # what is loaded stays: looking for cycles in it takes a tenth of the time
         try:

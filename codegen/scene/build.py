@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from codegen.backends import dialect
 from codegen.errors import UserError
@@ -318,11 +319,8 @@ class Builder:
         light = one.lights[0].names
         chosen = draw(_lit_by_one(self.scene), one, ENVIRONMENT_POINTS)
 
-        def shade(directions: Floats, colours: Floats, k: int) -> Floats:
-            inputs = {
-                name: np.broadcast_to(np.asarray(v)[k], (len(directions), *np.asarray(v).shape[1:]))
-                for name, v in chosen.inputs.items()
-            }
+        def shade(directions: Floats, colours: Floats, points: npt.NDArray[np.intp]) -> Floats:
+            inputs = {name: np.asarray(v)[points] for name, v in chosen.inputs.items()}
             inputs |= {light["l"]: directions.astype(np.float32), light["light"]: colours.astype(np.float32)}
             return as_floats(evaluate(extended, one.function.name, inputs, "float64"))
 

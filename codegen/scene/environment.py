@@ -144,23 +144,25 @@ class MapError:
 def measured_error(
     rgb: Floats,
     lights: list[ConstantLight],
-    shade: Callable[[Floats, Floats, int], Floats],
+    shade: Callable[[Floats, Floats, npt.NDArray[np.intp]], Floats],
     points: int,
 ) -> MapError:
     """The lights against the sum over all texels.
 
-    shade   (directions (N, 3), colours (N, 3), point) -> radiance (N, 3) of each light at one point
+    shade   (directions (N, 3), colours (N, 3), points (N,)) -> radiance (N, 3) of each light at its point
     points  number of points
     """
     everything = texels(mipmap.reduced(rgb, COARSE))
     few = Texels(
         np.array([light.direction for light in lights]), np.array([light.colour for light in lights])
     )
+    places = np.repeat(np.arange(points), len(lights))
+    shown = shade(np.tile(few.directions, (points, 1)), np.tile(few.colours, (points, 1)), places)
     wrong, right = [], []
-    for k in range(points):
-        truth = shade(everything.directions, everything.colours, k).sum(axis=0)
-        got = shade(few.directions, few.colours, k).sum(axis=0)
-        wrong.append(got - truth)
+    for k, of_lights in enumerate(np.split(shown, points)):
+        place = np.full(len(everything.directions), k)
+        truth = shade(everything.directions, everything.colours, place).sum(axis=0)
+        wrong.append(of_lights.sum(axis=0) - truth)
         right.append(truth)
     difference, mean = np.array(wrong), float(np.mean(right))
     return MapError(

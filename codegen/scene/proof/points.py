@@ -231,21 +231,22 @@ class _Drawing:
     def spread(
         self, low: Floats, high: Floats, scale: str, least: float, shape: tuple[int, ...], slot: Slot
     ) -> Any:
-        low, high = (np.broadcast_to(x if len(shape) == 2 else x[0], shape) for x in (low, high))
+        low, high = (x if len(shape) == 2 else x[0] for x in (low, high))
         share = self.random.random(shape)
-        if scale == "log" and (low >= 0.0).all():
+        if scale == "log" and np.all(low >= 0.0):
             start = np.maximum(low, np.maximum(max(least, 1e-6), high * 1e-9))
             values = np.exp(np.log(start) + share * (np.log(np.maximum(high, start)) - np.log(start)))
         else:
             values = low + share * (high - low)
+        first_end, last_end = np.float32(low), np.float32(high)
+        found = np.clip(values.astype(np.float32), first_end, last_end)
         ends = self.random.random(shape) < END_SHARE * self.hard.reshape(-1, *[1] * (len(shape) - 1)) * 2
         first = self.random.random(shape) < 0.5
-        end = np.where(first, low, high).astype(np.float32)
-        inner = np.nextafter(end, np.where(first, high, low).astype(np.float32))
-        end = np.where(self.random.random(shape) < 0.5, end, inner)
-        rounded = np.clip(values.astype(np.float32), low.astype(np.float32), high.astype(np.float32))
-        found: npt.NDArray[Any] = np.where(ends, end, rounded).astype(_dtype(slot))
-        return found
+        itself = self.random.random(shape) < 0.5
+        beside = np.nextafter(first_end, last_end), np.nextafter(last_end, first_end)
+        end = np.where(first, np.where(itself, first_end, beside[0]), np.where(itself, last_end, beside[1]))
+        np.copyto(found, end, where=ends)
+        return found.astype(_dtype(slot), copy=False)
 
 
 def _ends(slot: Slot, setting: Any, scene: Scene) -> tuple[Floats, Floats, str, float]:

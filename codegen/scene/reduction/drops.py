@@ -8,20 +8,26 @@ takes, leaves one side.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from codegen.evaluate import evaluate
 from codegen.evaluate.arrays import Value, arithmetic, convert_inputs
 from codegen.evaluate.interpreter import Frame
 from codegen.ir import nodes as ir
 from codegen.ir.content import variables
-from codegen.ir.types import F32
+from codegen.ir.types import BOOL, F32, I32
 from codegen.library import Library
+from codegen.scene.proof.errors import Measured, Reference, as_floats, distance
 
 MOST = 48
 """Candidates that are tried in one function, those with the largest subtree first."""
+GLANCE = 64
+"""Points that show of most candidates that they lose too much."""
+NUMBER = ir.Var(I32, "number of the term")
+"""Of the candidate that a lane goes without; no source has such a name."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +112,40 @@ def _size(e: ir.Expr, locals_: Mapping[str, _Own]) -> int:
     return total
 
 
+def errors_without(
+    library: Library, function: ir.Function, found: Sequence[Term], reference: Reference
+) -> list[Measured]:
+    """The error without each term over the first GLANCE points of a reference: what is too large there is too
+    large. One evaluation tells all, in lanes of their own for each term."""
+    if not found:
+        return []
+    count = min(GLANCE, reference.points.count)
+    lanes = np.tile(np.arange(count), len(found))
+    inputs = {p.name: np.asarray(reference.points.inputs[p.name])[lanes] for p in function.parameters}
+    inputs[NUMBER.name] = np.repeat(np.arange(len(found), dtype=np.int32), count)
+    each = _each_without(function, found)
+    values = as_floats(evaluate(library.with_functions([each]), each.name, inputs))
+    exact, single = reference.exact[:count], reference.single[:count]
+    return [distance(got, exact, single) for got in np.split(values, len(found))]
+
+
+def _each_without(function: ir.Function, found: Sequence[Term]) -> ir.Function:
+    """The function with one more parameter: the number of the term that is replaced."""
+    here: dict[int, list[int]] = {}
+    for number, term in enumerate(found):
+        here.setdefault(id(term.expression), []).append(number)
+
+    def visit(e: ir.Expr) -> ir.Expr:
+        made = ir.rebuild(e, tuple(map(visit, ir.children(e))))
+        for number in here.get(id(e), ()):
+            asked = ir.Binary(BOOL, "==", NUMBER, ir.Const(I32, number))
+            made = ir.Select(e.type, asked, found[number].replacement, made)
+        return made
+
+    parameters = (*function.parameters, ir.Parameter(NUMBER.name, I32, None))
+    return replace(function, parameters=parameters, body=_over(function.body, visit))
+
+
 Parts = Mapping[int, frozenset[int]]
 """Id of a statement's expression -> ids of all that is in it."""
 
@@ -144,19 +184,21 @@ def without(function: ir.Function, term: Term, holds: Parts) -> ir.Function:
         made = tuple(map(visit, parts))
         return ir.rebuild(e, made) if any(a is not b for a, b in zip(made, parts, strict=True)) else e
 
-    def block(body: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
-        made: list[ir.Stmt] = []
-        for s in body:
-            match s:
-                case ir.If():
-                    condition = changed(s.condition)
-                    made.append(replace(s, condition=condition, then=block(s.then), orelse=block(s.orelse)))
-                case ir.For():
-                    limit = None if s.limit is None else changed(s.limit)
-                    made.append(replace(s, limit=limit, body=block(s.body)))
-                case _:
-                    value = changed(s.value)
-                    made.append(s if value is s.value else replace(s, value=value))
-        return tuple(made)
+    return replace(function, body=_over(function.body, changed))
 
-    return replace(function, body=block(function.body))
+
+def _over(body: tuple[ir.Stmt, ...], change: Callable[[ir.Expr], ir.Expr]) -> tuple[ir.Stmt, ...]:
+    """Statements with `change` applied to each whole expression."""
+    made: list[ir.Stmt] = []
+    for s in body:
+        match s:
+            case ir.If():
+                sides = _over(s.then, change), _over(s.orelse, change)
+                made.append(replace(s, condition=change(s.condition), then=sides[0], orelse=sides[1]))
+            case ir.For():
+                limit = None if s.limit is None else change(s.limit)
+                made.append(replace(s, limit=limit, body=_over(s.body, change)))
+            case _:
+                value = change(s.value)
+                made.append(s if value is s.value else replace(s, value=value))
+    return tuple(made)

@@ -26,7 +26,7 @@ from codegen.scene.description.lights import UNROLLED
 from codegen.scene.general import General
 from codegen.scene.proof.errors import Measured, Reference, reference_values
 from codegen.scene.proof.points import Points
-from codegen.scene.reduction.drops import Term, parts_of, terms, without
+from codegen.scene.reduction.drops import Term, errors_without, parts_of, terms, without
 from codegen.scene.reduction.knowledge import Knowledge, knowledge, model_ranges
 from codegen.scene.reduction.loosen import BUNDLES, SPLAT, Form, loosened
 from codegen.scene.reduction.prices import Prices
@@ -104,7 +104,7 @@ class Reducer:
     _cleaned: dict[tuple[ir.Stmt, ...], Specialised] = field(default_factory=dict)
     _errors: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
     _screened: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
-    _without: dict[tuple[ir.Stmt, ...], list[tuple[Term, ir.Function]]] = field(default_factory=dict)
+    _terms: dict[tuple[ir.Stmt, ...], list[tuple[Term, Measured]]] = field(default_factory=dict)
     _gathered: dict[tuple[ir.Stmt, ...], ir.Function | None] = field(default_factory=dict)
     _looser: dict[tuple[tuple[ir.Stmt, ...], str], ir.Function | None] = field(default_factory=dict)
 
@@ -296,7 +296,7 @@ class Reducer:
     def drop(self, made: Specialised, prices: Prices, budget: float) -> tuple[Specialised, Change] | None:
         price = prices.body(made.function)
         best: tuple[float, Specialised, Change] | None = None
-        for term, replaced in self.without_terms(made.function):
+        for term, replaced in self.without_terms(made.function, budget):
             if not self.passes(replaced, budget):
                 continue
             candidate = self.cleaned(replaced)
@@ -311,15 +311,18 @@ class Reducer:
             best = gain, candidate, Change("term", what, why, error.largest)
         return None if best is None else (best[1], best[2])
 
-    def without_terms(self, function: ir.Function) -> list[tuple[Term, ir.Function]]:
-        """The terms of a function that a number may stand for, each with the function that has the number."""
-        if function.body not in self._without:
-            few = self.search.screen.points.inputs
-            given = {p.name: few[p.name] for p in function.parameters}
+    def without_terms(self, function: ir.Function, budget: float) -> list[tuple[Term, ir.Function]]:
+        """The terms of a function that a number may stand for, each with the function that has the number;
+        those whose loss a glance shows to be too much are left out."""
+        if function.body not in self._terms:
+            few = self.search.screen
+            given = {p.name: few.points.inputs[p.name] for p in function.parameters}
             found = terms(self.library, function, given)
-            holds = parts_of(function)
-            self._without[function.body] = [(term, without(function, term, holds)) for term in found]
-        return self._without[function.body]
+            errors = errors_without(self.library, function, found, few)
+            self._terms[function.body] = list(zip(found, errors, strict=True))
+        left = [term for term, error in self._terms[function.body] if error.fits(budget)]
+        holds = parts_of(function) if left else {}
+        return [(term, without(function, term, holds)) for term in left]
 
     def witnesses(self, one: Specialised, other: Specialised) -> int:
         """How many points tell two functions apart."""

@@ -18,7 +18,7 @@ from codegen.library import Library
 from codegen.scene.general import General
 from codegen.scene.proof.errors import Measured, Reference
 from codegen.scene.reduction.prices import Prices
-from codegen.scene.reduction.sites import Choices, Known, Path, Site, sites, substituted
+from codegen.scene.reduction.sites import Choices, Copies, Known, Path, Site, sites, substituted
 
 Rank = Callable[[float, Callable[[], Measured]], float]
 """What an offer is worth by what it saves and by the joint error, which is computed where it is asked for."""
@@ -63,6 +63,7 @@ class Search:
     reference: Reference
     known: Known
     _errors: dict[tuple[bool, tuple[tuple[Path, str], ...]], Measured] = field(default_factory=dict)
+    _copies: Copies = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.screen = self.reference.screen()
@@ -94,7 +95,7 @@ class Search:
         """The general function with the choices made in the model of every light."""
         root = self.general.function
         everywhere = {(k, *path): new for k in self.general.model_calls for path, new in choices.items()}
-        return substituted(self.library, root, everywhere, name)
+        return substituted(self.library, root, everywhere, name, self._copies)
 
     def find(self, prices: Prices, budget: float, settled: frozenset[str] = frozenset()) -> Found:
         """The cheapest function within the budget that either order finds.

@@ -185,14 +185,23 @@ def _calls(body: tuple[ir.Stmt, ...]) -> list[ir.Call]:
     return found
 
 
-def substituted(library: Library, root: ir.Function, choices: Choices, name: str) -> list[ir.Function]:
+Copies = dict[str, list[ir.Function]]
+"""Name of a copy -> the copies below it, and itself."""
+
+
+def substituted(
+    library: Library, root: ir.Function, choices: Choices, name: str, known: Copies | None = None
+) -> list[ir.Function]:
     """The root under another name with the choices made, after copies of what lies between.
 
     Copies are named after where they are and what is chosen below, so that a name means one function.
-    """
-    made: list[ir.Function] = []
 
-    def visit(f: ir.Function, path: Path, new_name: str) -> None:
+    known  copies that were made before for this root; those of this call are added
+    """
+    copies = {} if known is None else known
+
+    def visit(f: ir.Function, path: Path, new_name: str) -> list[ir.Function]:
+        made: list[ir.Function] = []
         changed = {p[len(path)] for p in choices if p[: len(path)] == path and len(p) > len(path)}
         names: dict[int, str] = {}
         for k, call in enumerate(_calls(f.body)):
@@ -203,12 +212,14 @@ def substituted(library: Library, root: ir.Function, choices: Choices, name: str
             below = [(p, c) for p, c in choices.items() if p[: len(here)] == here and len(p) > len(here)]
             names[k] = callee
             if below:
-                names[k] = f"{callee}_at_{'_'.join(map(str, here))}_{_number(below)}"
-                visit(library.function(callee), here, names[k])
+                copy = names[k] = f"{callee}_at_{'_'.join(map(str, here))}_{_number(below)}"
+                if copy not in copies:
+                    copies[copy] = visit(library.function(callee), here, copy)
+                made += copies[copy]
         made.append(replace(f, name=new_name, kind="helper", base=None, body=_with_calls(f, names)))
+        return made
 
-    visit(root, (), name)
-    return made
+    return visit(root, (), name)
 
 
 def _number(choices: list[tuple[Path, str]]) -> int:
@@ -217,6 +228,7 @@ def _number(choices: list[tuple[Path, str]]) -> int:
 
 
 def _with_calls(f: ir.Function, names: Mapping[int, str]) -> tuple[ir.Stmt, ...]:
+    """The body of a function with other names for some of its calls, by their numbers."""
     number = -1
 
     def change(e: ir.Expr) -> ir.Expr:
@@ -226,7 +238,15 @@ def _with_calls(f: ir.Function, names: Mapping[int, str]) -> tuple[ir.Stmt, ...]
         number += 1
         return replace(e, function=names[number]) if number in names else e
 
-    return ir.map_body(f.body, change)
+    body: list[ir.Stmt] = []
+    for s in f.body:
+        following = number + len(_calls((s,)))
+        if any(number < k <= following for k in names):
+            body += ir.map_body((s,), change)
+        else:
+            body.append(s)
+            number = following
+    return tuple(body)
 
 
 def plainly_named(f: ir.Function) -> ir.Function:
