@@ -55,6 +55,11 @@ def test_whole_power_is_multiplied_out(name: str) -> None:
         assert step.endswith(f", {exponent}) -> {products} multiplications")
 
 
+def test_products_are_named_after_what_they_are() -> None:
+    made = specialise(LIBRARY, "pow_one_minus", constants={"p": 13.0}, new_name="f", powers=MOST).function
+    assert [s.name for s in made.body if isinstance(s, ir.Let)] == ["base", "power_2", "power_4"]
+
+
 @pytest.mark.parametrize("exponent", [8.5, MOST + 1.0])
 def test_other_powers_stay(exponent: float) -> None:
     assert all(steps(name, exponent) == [] for name in ROWS)

@@ -23,7 +23,7 @@ from codegen.ops import BUILTINS, OPERATORS
 from codegen.passes.placement.common import Names
 from codegen.passes.rules.fold import constants
 from codegen.passes.ssa.text import DEPTH, show
-from codegen.passes.ssa.values import FIELD, LOCAL, PARAMETER, Rewrite, Values
+from codegen.passes.ssa.values import FIELD, LOCAL, PARAMETER, Rewrite, Values, any_element
 
 PAIR = Struct("Pair", (Field("first", F32), Field("second", VEC3)))
 ARRAY = array_of(F32, 3)
@@ -186,6 +186,11 @@ def test_named_operands_are_shown_by_their_names() -> None:
     names = {id(SUM): "total", id(QUOTIENT): "ratio"}
     assert show(whole, lambda e: names.get(id(e))) == "total * -ratio"
     assert show(SUM, lambda e: names.get(id(e))) == "x + y"
+
+
+def test_whichever_element_of_an_array_is_told() -> None:
+    values = Values()
+    assert show(any_element(values, A)) == "a[any element]"
 
 
 def test_what_lies_deep_is_left_out() -> None:
