@@ -118,6 +118,8 @@ def test_bits_of_what_may_be_zero_or_no_number() -> None:
     assert pairs(whole.float_to_bits(x)) == [every, (one, two), (one + 2**31, two + 2**31), every]
     point = np.array([0.0, 1.0])
     assert pairs(whole.float_to_bits(Range(point, point))) == [every, (one, one)]
+    for words in (x, Range(point, point), Range(point[1:], point[1:])):
+        assert not whole.float_to_bits(words).is_signed
 
 
 def test_unsigned_words_up_to_the_largest_signed_one_keep_their_number() -> None:
