@@ -23,7 +23,7 @@ from codegen.scene.report.report import as_data, as_json
 from codegen.scene.report.text import included
 
 NO_DRIVERS = "left out by --no-drivers"
-COLLECTED_AFTER = 100_000
+COLLECTED_AFTER = 1_000_000
 """New objects that may refer to others, after which Python looks for cycles."""
 
 

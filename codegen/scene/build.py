@@ -159,7 +159,9 @@ class Builder:
             results = [self.proven(library, general, reducer, reduced, proven, exact)]
             for target, searched in following.items():
                 self.say(f"searching for {target}")
-                other = searched() or reducer.reduced(Prices.of(library, target), self.scene.budget)
+                other = searched()
+                if not isinstance(other, Reduced):
+                    other = reducer.reduced(Prices.of(library, target), self.scene.budget, other)
                 results.append(self.proven(library, general, reducer, other, proven, exact))
             self.say("probing what is left")
             final = results[0].reduced
@@ -184,14 +186,16 @@ class Builder:
         """Whether a driver is open."""
         return any(not isinstance(runtime, str) for runtime in self.runtimes.values())
 
-    def apart(self, library: Library, reducer: Reducer, target: str, first: Chosen | None) -> Reduced | None:
-        """The result of the search for one more target; None where it takes what the first one takes, since
-        most that is left to do is then done there."""
+    def apart(
+        self, library: Library, reducer: Reducer, target: str, first: Chosen | None
+    ) -> Reduced | Chosen | None:
+        """The result of the search for one more target; only its choices where these are those of the first
+        one, since most that is left to do is then done there. None without those of the first one."""
         if first is None:
             return None
         prices = Prices.of(library, target)
         chosen = reducer.chosen(prices, self.scene.budget)
-        return None if chosen.same_as(first) else reducer.reduced(prices, self.scene.budget, chosen)
+        return chosen if chosen.same_as(first) else reducer.reduced(prices, self.scene.budget, chosen)
 
     def ahead(
         self, library: Library, general: General, lights: list[ConstantLight], pixels: Floats | None

@@ -101,6 +101,7 @@ class Reducer:
     search: Search
     name: str
     _made: dict[tuple[object, ...], Specialised] = field(default_factory=dict)
+    _needed: dict[tuple[object, ...], dict[Path, str]] = field(default_factory=dict)
     _cleaned: dict[tuple[ir.Stmt, ...], Specialised] = field(default_factory=dict)
     _errors: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
     _screened: dict[tuple[ir.Stmt, ...], Measured] = field(default_factory=dict)
@@ -157,7 +158,10 @@ class Reducer:
         current, choices = exact, {}
         if budget > 0.0:
             powers, found, made = chosen or self.chosen(prices, budget)
-            choices = self.needed(found.choices, powers)
+            key = tuple(sorted(found.choices.items())), powers
+            if key not in self._needed:
+                self._needed[key] = self.needed(found.choices, powers)
+            choices = self._needed[key]
             changes += [*made, *_variants(found, choices, prices)]
             current = self.specialised(choices, powers)
             current = self.loosened(current, prices, budget, changes)
