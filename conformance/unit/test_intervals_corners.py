@@ -11,7 +11,7 @@ Plan. Hand-made values, and functions of one line.
   bits of zero   either word, and every word where something else than a number may be
   anything       has infinite ends, also as absolute value; why it is: test_intervals_causes.py
   choices        `and` and `or` are told apart
-  many ways      a lane with more ways than are followed keeps the hull, so many forks are followed and no more
+  many ways      a lane with more ways than are followed keeps the hull; so many forks are followed, no more
 """
 
 from __future__ import annotations
