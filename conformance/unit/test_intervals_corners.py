@@ -33,7 +33,9 @@ from codegen.intervals import (
     elementary,
     geometry,
     load_table,
+    logic,
     lookups,
+    operations,
     permitted,
     whole,
 )
@@ -47,6 +49,7 @@ from conformance.unit.support.sources import library_of
 from targets import TARGETS
 
 INF = np.inf
+SEED = 20_261
 EVERY_WORD = 2**32 - 1
 
 
@@ -143,6 +146,36 @@ def test_ends_below_the_normal_numbers_lie_on_the_grid_where_nothing_is_flushed(
     step = float(np.finfo(np.float32).smallest_subnormal)
     found = arithmetic.settle(context, *ends((1.25 * step, 1.75 * step), (-2.5 * step, 2.5 * step)), None)
     assert pairs(found) == [(step, 2.0 * step), (-3.0 * step, 3.0 * step)]
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_boxes_of_vectors_hold_every_direction_in_them(name: str) -> None:
+    random = np.random.default_rng(SEED)
+    corners = np.sort(random.uniform(-1.0, 1.0, (2, 3, 60)).astype(np.float32).astype(np.float64), axis=0)
+    corners[:, :, ::2] *= np.array([1.0, 1e3, 1e-3])[:, None]  # boxes longer than wide among them
+    context = Context(load_table(name), CauseBook(), corners.shape[2])
+    with np.errstate(all="ignore"):
+        found = geometry.normalize(context, tuple(Range(*corners[:, k].copy()) for k in range(3)))
+    for _ in range(40):
+        inside = corners[0] + random.choice([0.0, 0.5, 1.0], (3, 1)) * (corners[1] - corners[0])
+        directions = inside / np.linalg.norm(inside, axis=0)
+        for component, x in zip(found, directions, strict=True):
+            assert (component.low <= x).all() and (x <= component.high).all()
+
+
+def test_known_integer_stays_one_number_as_a_float() -> None:
+    context = Context(load_table("wgsl"), CauseBook(), 2)
+    known, between = np.array([3, 2**20]), np.array([4, 2**20])
+    assert logic.to_float(context, Whole(known, known, False)).is_point
+    found = logic.to_float(context, Whole(known, between, False))
+    assert pairs(found) == [(3.0, 4.0), (2.0**20, 2.0**20)] and not found.is_point
+
+
+def test_operation_without_a_form_is_told() -> None:
+    context, one = Context(load_table("wgsl"), CauseBook(), 1), np.array([1])
+    for x in (Range(one * 1.0, one * 1.0), Whole(one, one, False)):
+        with pytest.raises(NotImplementedError, match="no interval form of cbrt"):
+            operations.scalar_builtin(context, "cbrt", (x,))
 
 
 @pytest.mark.parametrize("other", [0, 1])

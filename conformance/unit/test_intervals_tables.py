@@ -79,6 +79,8 @@ BROKEN = {
         'cites = "WGSL 15.7.4',
         'unknown key "cites"; did you mean "cite"',
     ),
+    "empty sentence": ("ulps = 2.5\n", 'ulps = 2.5\nassumed = " "\n', "assumed is a sentence"),
+    "number for a sentence": ("ulps = 2.5\n", "ulps = 2.5\nassumed = 5\n", "assumed is a sentence"),
     "unknown operand": ("{ y = [-126, 126] }", "{ z = [-126, 126] }", 'no operand "z"'),
     "reversed range": ("{ y = [-126, 126] }", "{ y = [126, -126] }", "two numbers in ascending order"),
     "unknown formula": (
