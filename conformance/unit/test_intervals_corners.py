@@ -7,7 +7,6 @@ Plan. Hand-made values, and functions of one line.
   known lanes    of an integer that is an interval elsewhere stay exact
   words          keep their number where both types have it; over 0 they are what WGSL says
   denormals      ends on the grid of float32 where a table flushes nothing
-  levels         a lookup between levels is off by what the table says of their weight
   bits of zero   either word, and every word where something else than a number may be
   anything       has infinite ends, also as absolute value; why it is: test_intervals_causes.py
   choices        `and` and `or` are told apart
@@ -24,7 +23,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.evaluate.textures import TextureMap
 from codegen.intervals import (
     DEFAULT_TABLES,
     TABLES,
@@ -34,12 +32,10 @@ from codegen.intervals import (
     geometry,
     load_table,
     logic,
-    lookups,
     operations,
     permitted,
     whole,
 )
-from codegen.intervals.accuracy import Filter
 from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
 from codegen.intervals.interpreter import reinterpreted
@@ -190,29 +186,6 @@ def test_short_vectors_have_a_direction_whatever_others_have(other: int) -> None
     for found in components:
         assert found.cause is not None
         assert (found.cause > 0).tolist() == [False, True, True]
-
-
-@pytest.mark.parametrize("name", TABLES)
-def test_lookup_between_levels_is_off_by_the_weight_of_levels_alone(name: str) -> None:
-    """Level k holds the number k, so that a lookup gives the level itself."""
-    table = load_table(name)
-    accuracy = table.row("lookup_level").accuracy
-    assert isinstance(accuracy, Filter)
-    levels = tuple(np.full((size, size, 4), k, np.float32) for k, size in enumerate((8, 4, 2, 1)))
-    lod = np.array([0.0, 0.25, 1.0, 1.5, 2.75, 3.0])
-    half = np.full(lod.shape, 0.5)
-    found = lookups.lookup(
-        Context(table, CauseBook(), len(lod)),
-        TextureMap(levels),
-        Range(half, half),
-        Range(half, half),
-        Range(lod, lod),
-    )
-    slack = 2.0 * lookups.ARITHMETIC * len(levels)
-    for component in found:
-        for end, wanted in ((component.low, lod - accuracy.level), (component.high, lod + accuracy.level)):
-            np.testing.assert_allclose(end, np.clip(wanted, 0.0, 3.0), rtol=0.0, atol=slack)
-        assert (component.low <= lod).all() and (component.high >= lod).all()
 
 
 def test_absolute_value_of_anything_is_anything() -> None:
