@@ -55,6 +55,11 @@ def test_whole_power_is_multiplied_out(name: str) -> None:
         assert step.endswith(f", {exponent}) -> {products} multiplications")
 
 
+def test_forms_of_one_base_err_alike() -> None:
+    roundings = {(row.base, row.roundings) for row in ROWS.values()}
+    assert len(roundings) == len({base for base, _ in roundings}) == len(BASES)
+
+
 def test_products_are_named_after_what_they_are() -> None:
     made = specialise(LIBRARY, "pow_one_minus", constants={"p": 13.0}, new_name="f", powers=MOST).function
     assert [s.name for s in made.body if isinstance(s, ir.Let)] == ["base", "power_2", "power_4"]

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from codegen.errors import UserError
 from codegen.library import load_library
 from codegen.passes.specialise import Specialised, specialise
 from codegen.passes.subject import Fact
@@ -166,6 +167,18 @@ def test_steps_of_control_flow_are_told(tmp_path: Path) -> None:
 def test_other_forms_of_calls_are_told(tmp_path: Path) -> None:
     found = specialise(library_of(tmp_path, FORMS), "f", variants={"root": "root_plain"})
     assert told(found) == ["f:12 variants: root -> root_plain; asked for"]
+
+
+def test_facts_may_meet_in_one_number_and_miss_constants_by_rounding(tmp_path: Path) -> None:
+    library = library_of(tmp_path, "def f(d: D, e: D) -> f32:\n    return dot(d, e)\n")
+    met = specialise(library, "f", facts=[Fact("dot(d, e)", 0.25, 0.5), Fact("dot(d, e)", 0.5, 1.0)])
+    assert told(met)[1] == "f:2 facts: dot(d, e) in [0.5, 0.5]; given"
+    up = {"d": (0.0, 0.0, 1.0), "e": (0.0, 0.0, 1.0)}
+    near = specialise(library, "f", constants=up, facts=[Fact("dot(d, e)", 1.0 + 0.9e-6, 2.0)])
+    assert not near.parameters
+    for low, high in ((1.0 + 1.5e-6, 2.0), (0.0, 1.0 - 1.5e-6)):
+        with pytest.raises(UserError, match="contradicts the constants, which make it 1"):
+            specialise(library, "f", constants=up, facts=[Fact("dot(d, e)", low, high)])
 
 
 def test_what_is_made_of_a_variant_is_a_function_of_its_own() -> None:
