@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from codegen.errors import UserError
+from codegen.errors import Place, UserError
 from codegen.library import load_library
 from codegen.passes.specialise import Specialised, specialise
 from codegen.passes.subject import Fact
@@ -182,8 +182,10 @@ def test_facts_may_meet_in_one_number_and_miss_constants_by_rounding(tmp_path: P
 
 
 def test_what_is_made_of_a_variant_is_a_function_of_its_own() -> None:
-    made = specialise(load_library(), "safe_normalize_dot").function
+    source = load_library().function("safe_normalize_dot")
+    made = specialise(load_library(), source.name).function
     assert (made.name, made.kind, made.base) == ("safe_normalize_dot_specialised", "base", None)
+    assert made.place == Place(source.place.path, source.place.line)  # a line, but not its text
 
 
 def test_multiplied_powers_are_told() -> None:
