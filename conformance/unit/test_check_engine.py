@@ -364,11 +364,8 @@ def test_only_variants_take_the_reference_and_the_exemptions_of_their_base(
             list(engine.draws(library.function(name), 10, 10))[:1],
             intervals=False,
         )
-    assert asked == [
-        ("half_vector", None),
-        ("sin_angle_cosine", "sin_angle"),
-        ("strand_cosine_banks_printed", None),
-    ]
+    others = [("sin_angle_cosine", "sin_angle"), ("strand_cosine_banks_printed", None)]
+    assert asked == [("half_vector", None), *others]
 
 
 def test_own_reference_of_a_variant_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -385,8 +382,7 @@ def test_function_that_no_formula_fixes_is_held_against_the_evaluator() -> None:
     inputs = engine.draw(library.function(name), "uniform", 50, 1).inputs
     reference = engine.find_reference(library, library.function(name))
     assert reference is not None
-    same = reference(*inputs.values())
-    assert np.array_equal(same, engine.backend("numpy").run(library, name, inputs))
+    assert np.array_equal(reference(*inputs.values()), engine.backend("numpy").run(library, name, inputs))
 
 
 def test_reference_gets_the_exact_inputs_widened() -> None:
