@@ -25,6 +25,7 @@ PAIR = '@struct\nclass Pair:\n    """A pair."""\n    first: X\n    second: V\n'
 SQUARE = (
     "@helper\ndef square(x: X) -> f32:\n    return x * x\n"
     "@helper\ndef fourth(x: X) -> f32:\n    return square(square(x))\n"
+    "@helper\ndef times(x: X, n: u32) -> f32:\n    return x * x * f32(n)\n"
 )
 BODIES = {
     "assignments": "    y = x\n    y = y + k\n    y += 0.5\n    return y - 2.0 * x\n",
@@ -97,6 +98,7 @@ LARGE = {
     "operation": ("    return (x * x) / x\n", True),
     "local": ("    y = x * x\n    return y / x\n", True),
     "call": ("    return square(x) / x\n", True),
+    "call with a count": ("    return times(x, n) / x\n", True),
     "call in a call": ("    return fourth(x) / (x * square(x))\n", True),
     "choice": ("    return (x * x if x > 0.0 else x) / x\n", True),
     "beside a half": ("    return (x * x + k) / x\n", False),

@@ -17,7 +17,7 @@ from codegen.errors import UserError
 from codegen.intervals.numbers import LARGEST
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Finite, Interval, Length, Unit
-from codegen.ir.types import BOOL, F32, I32, U32, VEC2, VEC3, Scalar, Type, Vector, array_of
+from codegen.ir.types import BOOL, F32, I32, U32, UVEC2, VEC2, VEC3, Scalar, Type, Vector, array_of
 from codegen.passes.analysis.norms import Lengths
 from codegen.passes.analysis.ranges import Bounds, Ranges
 from codegen.passes.rules.scalars import components
@@ -41,6 +41,7 @@ KINDS: dict[str, tuple[Scalar | Vector, Domain | None, tuple[float, float]]] = {
     "length": (VEC3, Length(0.5, 3.0), (-3.0, 3.0)),
     "signed": (I32, Interval(-3.5, 2.5), (-3, 2)),
     "unsigned": (U32, Interval(0.0, 7.0), (0, 7)),
+    "unsigned components": (UVEC2, Interval(2.0, 7.0), (2, 7)),
     "any signed": (I32, None, WHOLE),
     "any unsigned": (U32, None, (0, 2**32 - 1)),
     "finite signed": (I32, Finite(), WHOLE),
