@@ -3,6 +3,7 @@
 Plan. Maps by hand or at random.
   levels    level k holds the number k, so that a lookup between levels gives the level, off by its weight
   anywhere  a box over all texels holds all of them, and no more
+  cause     a place that may be anything makes its own lane so, and no other
   places    every lookup inside a box lies in the interval of the box
 """
 
@@ -56,6 +57,17 @@ def test_lookup_anywhere_gives_any_texel_and_no_more(along: int) -> None:
         near = float(of.min()), float(of.max())
         assert (component.low[0], component.high[0]) == pytest.approx(near, abs=2.0 * ARITHMETIC)
         assert component.low[0] <= near[0] and component.high[0] >= near[1]
+
+
+def test_lookup_at_a_place_that_may_be_anything_is_anything() -> None:
+    texels = np.random.default_rng(SEED).uniform(-1.0, 1.0, (4, 4, 4)).astype(np.float32)
+    half = np.full(2, 0.5)
+    u = Range(np.array([-np.inf, 0.5]), np.array([np.inf, 0.5]), np.array([1, 0], np.int16))
+    with np.errstate(all="ignore"):
+        found = lookup(context(2), TextureMap((texels,)), u, Range(half, half), None)
+    for component in found:
+        assert component.cause is not None and component.cause.tolist() == [1, 0]
+        assert np.isinf(component.low).tolist() == np.isinf(component.high).tolist() == [True, False]
 
 
 MAP = """def probe(t: Annotated[Texture, Edges("clamp", "clamp")], at: P) -> vec4:
