@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from codegen.intervals import TABLES, arithmetic, elementary, load_table, logic, operations, permitted
-from codegen.intervals.causes import CauseBook
+from codegen.intervals.causes import Cause, CauseBook
 from codegen.intervals.context import Context
 from codegen.intervals.values import Range, Truth, Whole, choose
 from conformance.unit.support.sources import library_of
@@ -99,6 +99,11 @@ def test_what_may_be_anything_says_why(text: str, table: str, tmp_path: Path) ->
     assert found.guaranteed.tolist() == [True, False]
     ((told, count),) = found.histogram().items()
     assert (told.function, told.operand, told.reason, count) == ("probe", operand, reason, 1)
+
+
+def test_cause_is_a_sentence() -> None:
+    assert str(Cause("f", 3, "/", "y", "the divisor may be 0")) == "line 3 of f: / of y: the divisor may be 0"
+    assert str(Cause("f", 4, "*", "", "the result may overflow")) == "line 4 of f: *: the result may overflow"
 
 
 @pytest.mark.parametrize("op", ["min", "max", "clamp"])
