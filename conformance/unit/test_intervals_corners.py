@@ -36,6 +36,7 @@ from codegen.intervals import (
     permitted,
     whole,
 )
+from codegen.intervals.accuracy import Ulp
 from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
 from codegen.intervals.interpreter import reinterpreted
@@ -93,6 +94,19 @@ def test_zero_may_be_divided_though_the_promise_begins_above(name: str) -> None:
     assert found.cause is not None
     assert (found.cause > 0).tolist() == [False, True, True]
     assert pairs(found)[0] == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_interval_over_one_number_is_as_wide_as_its_quotients(name: str) -> None:
+    table, divisor = load_table(name), np.array([4.0, -4.0])
+    x = Range(*ends((1.0, 8.0), (1.0, 8.0)))
+    row = table.row("/")
+    assert isinstance(row.accuracy, Ulp)
+    near = (row.accuracy.ulps + 1.0) * float(np.finfo(np.float32).eps)
+    found = arithmetic.divide(Context(table, CauseBook(), 2), row, x, Range(divisor, divisor))
+    for (low, high), (least, most) in zip(pairs(found), ((0.25, 2.0), (-2.0, -0.25)), strict=True):
+        assert (low, high) == pytest.approx((least, most), rel=near)
+        assert low <= least and high >= most
 
 
 @pytest.mark.parametrize("op", ["+", "-", "*", "^", "|", "&", "<<", ">>"])
