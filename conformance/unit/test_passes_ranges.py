@@ -18,8 +18,8 @@ import pytest
 from codegen.evaluate import evaluate
 from codegen.intervals import TABLES, permitted
 from codegen.ir import nodes as ir
-from codegen.ir.domains import Interval, Unit
-from codegen.ir.types import BOOL, F32, I32, VEC3, Field, Struct, array_of
+from codegen.ir.domains import Edges, Interval, Unit
+from codegen.ir.types import BOOL, F32, I32, TEXTURE, VEC2, VEC3, VEC4, Field, Struct, array_of
 from codegen.library import load_library
 from codegen.passes.analysis.norms import Lengths
 from codegen.passes.analysis.ranges import Ranges
@@ -27,6 +27,7 @@ from codegen.passes.analysis.transfer import transfers
 from codegen.passes.inline import Inliner, joined
 from codegen.passes.placement.regions import place
 from codegen.passes.rules.scalars import components
+from codegen.passes.specialise import specialise
 from codegen.passes.ssa.values import Values
 from codegen.passes.subject import Fact, Subject
 from conformance.cases.drawing import draw, families_for
@@ -230,3 +231,13 @@ def test_elements_of_an_array_are_not_one_value() -> None:
     ranges = Ranges(values)
     assert ranges.bounds(values.binary("-", first, second))[0].low == -1.0
     assert ranges.bounds(values.binary("-", first, first))[0].high == 0.0
+
+
+def test_of_what_maps_hold_nothing_is_known() -> None:
+    values = Values(parameters={"m": ir.Parameter("m", TEXTURE, Edges("clamp", "clamp"))})
+    of_map = values.intern(ir.Var(TEXTURE, "m"))
+    size = values.build(ir.Builtin(VEC2, "texture_size", (of_map,)))
+    ranges = Ranges(values)
+    for e, count in ((size, 2), (values.build(ir.Builtin(VEC4, "lookup", (of_map, size))), 4)):
+        assert [bound.finite for bound in ranges.bounds(e)] == [False] * count
+    assert specialise(LIBRARY, "env_grid_blinn_phong").function.reads_textures

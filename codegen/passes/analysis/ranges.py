@@ -20,7 +20,7 @@ from codegen.intervals.numbers import LARGEST, SMALLEST
 from codegen.intervals.values import Range, Single, Truth, Whole, constant
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Edges, Finite, Interval, Length, Unit
-from codegen.ir.types import BOOL, F32, I32, Array, Scalar, Struct, Type, Vector
+from codegen.ir.types import BOOL, F32, I32, TEXTURE, Array, Scalar, Struct, Type, Vector
 from codegen.passes.analysis.norms import UNIT_SLACK, Lengths
 from codegen.passes.analysis.transfer import Bound, remembered, signatures, transfers
 from codegen.passes.ssa.values import Values, any_element
@@ -106,6 +106,8 @@ class Ranges:
                 return self._variable(e)
             case ir.Call() | ir.Member():
                 return _anything(e.type)
+            case ir.Builtin() if any(a.type == TEXTURE for a in e.args):
+                return _anything(e.type)  # nothing is known of what a map holds
             case ir.Construct() if isinstance(e.type, Struct) and not isinstance(e.type, Array):
                 return ()  # an argument of a call that is kept
             case _:
