@@ -38,6 +38,8 @@ _HINTS: dict[type[ast.AST], str] = {
     ast.MatMult: "there are no matrices; use dot and cross",
     ast.Is: "compare with ==",
     ast.In: "compare with == and or",
+    ast.IsNot: "compare with !=",
+    ast.NotIn: "compare with != and and",
 }
 _CASTS: dict[str, Scalar] = {"f32": F32, "i32": I32, "u32": U32}
 

@@ -56,6 +56,7 @@ WORDS = {
     "Call": "a call of anything but a plain name",
     "ListComp": "a comprehension",
     "GeneratorExp": "a comprehension",
+    "UnaryOp": "a plus sign before an operand",
     "Subscript": "an index; components are written v.x",
     "AugAssign": "an assignment to a component",
     "NamedExpr": "an assignment inside an expression",

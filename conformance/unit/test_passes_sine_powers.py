@@ -17,9 +17,9 @@ from conformance.reference.direction import sin_angle
 LIBRARY = load_library()
 MOST = 1024
 SAID = {
-    1: "0 multiplications and a root",
-    2: "0 multiplications",
-    3: "1 multiplications and a root",
+    1: "a root",
+    2: "no multiplication",
+    3: "1 multiplication and a root",
     8: "2 multiplications",
     24: "4 multiplications",
     101: "8 multiplications and a root",
