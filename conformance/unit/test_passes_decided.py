@@ -1,10 +1,11 @@
-"""Conditional expressions with a constant condition keep one side; all others stay as they are.
+"""Choices by constants keep one side, constants are converted to u32 before they are written; all else stays.
 
 The first source made naga 29.0.3 panic, which ends the process: it is built on every target.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ import pytest
 
 from codegen.evaluate import evaluate
 from codegen.execute import execute
+from codegen.ir import nodes as ir
+from codegen.ir.types import F32, I32
 from codegen.ir.unit import Unit
 from codegen.ir.verify import verify_selection
 from codegen.library import load_library
@@ -53,3 +56,16 @@ def test_every_target_builds_what_remains(source: str, runtime: TimedRuntime, tm
     library = library_of(tmp_path, source)
     inputs = {"x": np.array([1.0, -2.0, 0.5], np.float32)}
     assert np.array_equal(execute(library, "probe", inputs, runtime), evaluate(library, "probe", inputs))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("number", [-1, -(2**31), 7])
+def test_whole_numbers_are_converted_before_they_are_written(
+    number: int, runtime: TimedRuntime, tmp_path: Path
+) -> None:
+    library = library_of(tmp_path, "def probe(x: X) -> f32:\n    return f32(u32(2.0) ^ u32(i32(x)))\n")
+    x = ir.Convert(I32, ir.Var(F32, "x"))
+    made = library.function("probe")
+    body = ir.map_body(made.body, lambda e: ir.Const(I32, number) if e == x else e)
+    library = library.with_functions([replace(made, body=body)])
+    found = execute(library, "probe", {"x": np.zeros(1, np.float32)}, runtime)
+    assert found == np.array([2 ^ number % 2**32], np.float32)

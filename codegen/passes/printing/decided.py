@@ -1,10 +1,10 @@
-"""Conditional expressions whose condition is constant: only the chosen side is kept.
+"""What constants decide: only the chosen side of a conditional expression is kept, and u32(-1) is its value.
 
-before   a if 1.0 > 0.5 else b
-after    a
+before   a if 1.0 > 0.5 else b    n ^ u32(-1)
+after    a                        n ^ 4294967295
 
 WGSL compilers evaluate select() of constants themselves, and naga 29.0.3 panics where a vector among them is
-made of vectors: select(vec3(vec2(1.0), 1.0), vec3(3.0), true).
+made of vectors: select(vec3(vec2(1.0), 1.0), vec3(3.0), true). They refuse u32(-1), whose -1 has no type.
 """
 
 from __future__ import annotations
@@ -14,33 +14,36 @@ from typing import Any
 
 from codegen.ir import nodes as ir
 from codegen.ir.content import is_constant
-from codegen.ir.types import BOOL
+from codegen.ir.types import I32, U32
 from codegen.ir.unit import Unit
 
 
 def drop_decided(unit: Unit) -> Unit:
-    """The unit without conditional expressions whose condition holds no variable and no call."""
+    """The unit without conditional expressions and conversions to u32 that hold no variable and no call."""
     return Unit(tuple(map(_function, unit.functions)), unit.structs)
 
 
 def _function(f: ir.Function) -> ir.Function:
-    def chosen(e: ir.Expr) -> ir.Expr:
-        if not isinstance(e, ir.Select) or not is_constant(e.condition):
-            return e
-        return e.if_true if _holds(e.condition, f) else e.if_false
+    def settled(e: ir.Expr) -> ir.Expr:
+        match e:
+            case ir.Select() if is_constant(e.condition):
+                return e.if_true if _value(e.condition, f) else e.if_false
+            case ir.Convert() if e.type == U32 and e.operand.type == I32 and is_constant(e.operand):
+                return ir.Const(U32, int(_value(e, f)))
+        return e
 
-    return replace(f, body=ir.map_body(f.body, chosen))
+    return replace(f, body=ir.map_body(f.body, settled))
 
 
-def _holds(condition: ir.Expr, of: ir.Function) -> bool:
-    """A condition's value, computed in float32 as the IR defines it."""
-    if isinstance(condition, ir.Const):
-        return bool(condition.value)
+def _value(e: ir.Expr, of: ir.Function) -> Any:
+    """The value of a constant expression, computed in float32 as the IR defines it."""
+    if isinstance(e, ir.Const):
+        return e.value
     from codegen.evaluate import evaluate  # it imports passes itself
 
-    alone = replace(of, parameters=(), returns=BOOL, body=(ir.Return(condition),))
-    value: Any = evaluate(_Alone(alone), of.name, {})  # type: ignore[arg-type]  # looks up one function
-    return bool(value[0])
+    alone = replace(of, parameters=(), returns=e.type, body=(ir.Return(e),))
+    found: Any = evaluate(_Alone(alone), of.name, {})  # type: ignore[arg-type]  # looks up one function
+    return found[0]
 
 
 @dataclass(frozen=True)
