@@ -340,21 +340,23 @@ def map_expr(e: Expr, change: Callable[[Expr], Expr]) -> Expr:
 
 def map_body(body: tuple[Stmt, ...], change: Callable[[Expr], Expr]) -> tuple[Stmt, ...]:
     """The statements with `change` applied to every expression node."""
+    return map_wholes(body, lambda e: map_expr(e, change))
+
+
+def map_wholes(body: tuple[Stmt, ...], change: Callable[[Expr], Expr]) -> tuple[Stmt, ...]:
+    """The statements, nested ones included, with `change` applied to each of their expressions as a whole."""
 
     def statement(s: Stmt) -> Stmt:
         match s:
             case If():
-                return replace(
-                    s,
-                    condition=map_expr(s.condition, change),
-                    then=map_body(s.then, change),
-                    orelse=map_body(s.orelse, change),
-                )
+                condition = change(s.condition)
+                sides = map_wholes(s.then, change), map_wholes(s.orelse, change)
+                return replace(s, condition=condition, then=sides[0], orelse=sides[1])
             case For():
-                limit = None if s.limit is None else map_expr(s.limit, change)
-                return replace(s, limit=limit, body=map_body(s.body, change))
+                limit = None if s.limit is None else change(s.limit)
+                return replace(s, limit=limit, body=map_wholes(s.body, change))
             case _:
-                value = map_expr(s.value, change)
+                value = change(s.value)
                 return s if value is s.value else replace(s, value=value)
 
     return tuple(statement(s) for s in body)

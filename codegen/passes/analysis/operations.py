@@ -50,12 +50,12 @@ def _counted(
 
     def tree(e: ir.Expr, times: int) -> None:
         own, calls = _whole(e, of)
-        for name in calls if library is not None else ():
-            assert library is not None
-            for kind, n in _counted(library.function(name), library, of).items():
+        called = (
+            [_counted(library.function(name), library, of) for name in calls] if library is not None else []
+        )
+        for found in (*called, own):
+            for kind, n in found.items():
                 counts[kind] += n * times
-        for kind, n in own.items():
-            counts[kind] += n * times
 
     def block(body: tuple[ir.Stmt, ...], times: int) -> None:
         for s in body:

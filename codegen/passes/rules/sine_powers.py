@@ -84,8 +84,8 @@ def _sine_square(values: Values, n: ir.Expr, w: ir.Expr) -> ir.Expr:
 
 
 def _said(power: int) -> str:
-    half = power // 2
-    products = multiplications(half) + power % 2 if half else 0
+    if power == 1:
+        return "a root"
+    products = multiplications(power // 2) + power % 2
     counted = f"{products or 'no'} multiplication{'s' if products > 1 else ''}"
-    roots = ["a root"] if power % 2 else []
-    return " and ".join([counted, *roots] if products or not roots else roots)
+    return counted + (" and a root" if power % 2 else "")

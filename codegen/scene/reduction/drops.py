@@ -8,7 +8,7 @@ takes, leaves one side.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -143,7 +143,7 @@ def _each_without(function: ir.Function, found: Sequence[Term]) -> ir.Function:
         return made
 
     parameters = (*function.parameters, ir.Parameter(NUMBER.name, I32, None))
-    return replace(function, parameters=parameters, body=_over(function.body, visit))
+    return replace(function, parameters=parameters, body=ir.map_wholes(function.body, visit))
 
 
 Parts = Mapping[int, frozenset[int]]
@@ -180,25 +180,6 @@ def without(function: ir.Function, term: Term, holds: Parts) -> ir.Function:
     def visit(e: ir.Expr) -> ir.Expr:
         if e is target:
             return term.replacement
-        parts = ir.children(e)
-        made = tuple(map(visit, parts))
-        return ir.rebuild(e, made) if any(a is not b for a, b in zip(made, parts, strict=True)) else e
+        return ir.rebuild(e, tuple(map(visit, ir.children(e))))
 
-    return replace(function, body=_over(function.body, changed))
-
-
-def _over(body: tuple[ir.Stmt, ...], change: Callable[[ir.Expr], ir.Expr]) -> tuple[ir.Stmt, ...]:
-    """Statements with `change` applied to each whole expression."""
-    made: list[ir.Stmt] = []
-    for s in body:
-        match s:
-            case ir.If():
-                sides = _over(s.then, change), _over(s.orelse, change)
-                made.append(replace(s, condition=change(s.condition), then=sides[0], orelse=sides[1]))
-            case ir.For():
-                limit = None if s.limit is None else change(s.limit)
-                made.append(replace(s, limit=limit, body=_over(s.body, change)))
-            case _:
-                value = change(s.value)
-                made.append(s if value is s.value else replace(s, value=value))
-    return tuple(made)
+    return replace(function, body=ir.map_wholes(function.body, changed))
