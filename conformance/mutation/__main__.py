@@ -7,6 +7,7 @@ import dataclasses
 import json
 import sys
 import time
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +17,20 @@ from conformance.mutation.plan import excuse, groups
 from conformance.mutation.run import SEED, BaselineError, Result, all_jobs, run, sampled, tally
 from conformance.mutation.sites import Mutant
 
+BETWEEN_WRITES = 5.0
+"""Seconds of work that an interrupted run loses at most."""
+
 
 class Kept:
     """Outcomes in a file, so that what takes long can be done in pieces."""
 
-    def __init__(self, path: Path | None, resume: bool) -> None:
+    def __init__(self, path: Path | None, resume: bool, again: bool) -> None:
         self.path = path
         self.rows: list[dict[str, Any]] = []
+        self.written = time.monotonic()
         if path is not None and resume and path.exists():
-            self.rows = json.loads(path.read_text(encoding="utf-8"))
+            rows = json.loads(path.read_text(encoding="utf-8"))
+            self.rows = [row for row in rows if not (again and row["outcome"] == SURVIVED)]
         self.found = {
             (r["group"], str(m)): Result(m, r["outcome"], r["s"])
             for r in self.rows
@@ -35,6 +41,12 @@ class Kept:
         """Keep one more."""
         mutant = dataclasses.asdict(result.mutant)
         self.rows.append({"group": group, "mutant": mutant, "outcome": result.outcome, "s": result.seconds})
+        if time.monotonic() - self.written > BETWEEN_WRITES:
+            self.write()
+
+    def write(self) -> None:
+        """All that is there."""
+        self.written = time.monotonic()
         if self.path is not None:
             self.path.write_text(json.dumps(self.rows, indent=1), encoding="utf-8")
 
@@ -52,16 +64,26 @@ def main() -> int:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--record", action="store_true", help="keep the draw in results.json and README.md")
     parser.add_argument("--json", type=Path, help="write every outcome to this file, as it comes")
-    parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after this time")
+    parser.add_argument("--seconds", type=float, default=inf, help="begin no mutant after this time")
+    parser.add_argument(
+        "--effort",
+        type=float,
+        default=inf,
+        metavar="SECONDS",
+        help="try only the quickest tests that call what is changed, so many seconds of them",
+    )
     parser.add_argument("--resume", action="store_true", help="go on with the outcomes of --json")
+    parser.add_argument("--again", action="store_true", help="with --resume: try survivors of --json anew")
     given = parser.parse_args()
     unknown = [name for name in given.groups if name not in groups()]
     if unknown:
         parser.error(f"no group {', '.join(unknown)}")
     if given.resume and not given.json:
         parser.error("--resume goes on with a file: --json FILE")
+    if given.record and given.effort < inf:
+        parser.error("--record keeps what all tests say; --effort leaves some out")
     ends = time.monotonic() + given.seconds
-    kept = Kept(given.json, given.resume)
+    kept = Kept(given.json, given.resume, given.again)
     found: dict[str, list[Result]] = {}
     missed = unfinished = False
     for name in given.groups or groups():
@@ -78,10 +100,12 @@ def main() -> int:
                 print(f"survived  {result.mutant}", flush=True)
 
         try:
-            results += run(group, waiting, given.workers, told, ends)
+            results += run(group, waiting, given.workers, told, given.effort, ends)
         except BaselineError as e:
             print(f"{name}: {e}", file=sys.stderr)
             return 2
+        finally:
+            kept.write()
         found[name] = results
         t = tally(results)
         share = group.sampled_share if given.sampled else group.share

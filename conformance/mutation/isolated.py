@@ -18,7 +18,7 @@ import select
 import signal
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType
@@ -42,17 +42,6 @@ NOTHING_NOTICED = (int(pytest.ExitCode.OK), int(pytest.ExitCode.NO_TESTS_COLLECT
 
 COMPILED = "codegen/intervals/"
 """Where constants of compiled loops are defined."""
-
-
-def warm_up(tests: Sequence[str]) -> int:
-    """Import all that these tests need by collecting them; returns pytest's exit status."""
-    with contextlib.redirect_stdout(io.StringIO()) as told:
-        status = int(pytest.main(["--collect-only", *QUIET, *AGAIN, *tests]))
-    if status:
-        print(told.getvalue()[-2000:])
-    with contextlib.suppress(ImportError):
-        importlib.import_module("numba")  # a second that no fork then spends
-    return status
 
 
 def _imports(path: str) -> set[str]:
@@ -170,14 +159,15 @@ class Session:
 
     def run(self, change: Change) -> int:
         """Run in this process with a file replaced; returns pytest's exit status. For forks only."""
+        watch = Watch(ROOT, self.watched)
         forget(set(self.stale))
         change.put()
         if change.tree is not None and change.path.startswith(COMPILED):
             keep_nothing_compiled()
         plugins: list[Any] = [Selection(self.chosen, self.excluded, self.without)]
-        watch = Watch(ROOT, self.watched)
         if self.notes is not None:
             plugins.append(watch)
+            watch.begin()
         # Of a file whose chosen tests are known, nothing else is collected.
         files = dict.fromkeys(name.partition("::")[0] for name in self.chosen)
         status = int(pytest.main(["-x", *QUIET, *AGAIN, *(files or self.tests)], plugins=plugins))
@@ -187,9 +177,9 @@ class Session:
 
 
 class Trial:
-    """One change under test in a fork of this process."""
+    """Tests of one change in a fork of this process: `work` returns pytest's exit status."""
 
-    def __init__(self, session: Session, change: Change, limit: float) -> None:
+    def __init__(self, work: Callable[[], int], limit: float) -> None:
         self.deadline = time.monotonic() + limit
         self.read, write = os.pipe()
         sys.stdout.flush()
@@ -197,7 +187,7 @@ class Trial:
         gc.freeze()  # pages that no collection touches stay shared
         self.pid = os.fork()
         if self.pid == 0:
-            _child(write, session, change)
+            _child(write, work)
         os.close(write)
         self.output = b""
 
@@ -218,7 +208,7 @@ class Trial:
         return SURVIVED if os.waitstatus_to_exitcode(status) in NOTHING_NOTICED else KILLED
 
 
-def _child(write: int, session: Session, change: Change) -> None:
+def _child(write: int, work: Callable[[], int]) -> None:
     """The fork: never returns."""
     code = 70
     try:
@@ -227,7 +217,7 @@ def _child(write: int, session: Session, change: Change) -> None:
         os.dup2(write, 2)
         os.chdir(ROOT)
         sys.stdout = sys.stderr = io.TextIOWrapper(os.fdopen(write, "wb"), line_buffering=True)
-        code = session.run(change)
+        code = work()
         sys.stdout.flush()
     except BaseException as e:  # whatever a mutant does, the fork ends here
         with contextlib.suppress(Exception):

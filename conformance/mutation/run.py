@@ -8,6 +8,8 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
+from math import inf, isinf
 from multiprocessing import get_context
 
 from conformance.mutation.isolated import (
@@ -20,11 +22,12 @@ from conformance.mutation.isolated import (
     Session,
     Trial,
     dependants,
-    warm_up,
 )
 from conformance.mutation.plan import Group, Subject, change_of, excuse, mutants_of
 from conformance.mutation.seen import Seen
 from conformance.mutation.sites import Mutant
+from conformance.mutation.swapped import Alive, Swap, within
+from conformance.mutation.warm import Warm, collected
 
 SEED = 20_260
 EQUIVALENT = "equivalent"
@@ -68,55 +71,70 @@ def run(
     jobs: Sequence[Job],
     workers: int,
     told: Told = lambda _: None,
-    ends: float = float("inf"),
+    effort: float = inf,
+    ends: float = inf,
 ) -> list[Result]:
-    """Try mutants, none later than `ends` (time.monotonic()); `told` hears of each. Raises BaselineError."""
-    trying = _try_shaders if group.name == "library" else _try_modules
-    known = [mutant for _, mutant in jobs if excuse(mutant)]
-    results = [Result(mutant, EQUIVALENT, 0.0) for mutant in known]
-    for result in trying(group, [job for job in jobs if not excuse(job[1])], workers, ends):
+    """Try mutants; `told` hears of each.
+
+    effort  seconds of tests that a mutant meets at most, the quickest that call what it changes: what they
+            kill is killed by all tests, too; what survives them may not survive all
+    ends    begin none later than this (time.monotonic())
+
+    Raises BaselineError.
+    """
+    results = [Result(mutant, EQUIVALENT, 0.0) for _, mutant in jobs if excuse(mutant)]
+
+    def keep(result: Result) -> None:
         results.append(result)
         told(result)
+
+    unknown = [job for job in jobs if not excuse(job[1])]
+    if group.name == "library":
+        _try_shaders(group, unknown, workers, ends, keep)
+    else:
+        _try_modules(group, unknown, workers, effort, ends, keep)
     return results
 
 
 @dataclass
 class Prepared:
-    """What the mutants of some files share: tests, modules to import anew, and which test sees what."""
+    """What the mutants of some files share: collected tests, modules to import anew, which test sees what."""
 
+    warm: Warm
+    alive: Alive
     session: Session
     seen: Seen
     subject: Subject
 
-    @property
-    def limit(self) -> float:
-        """Seconds for all tests of one mutant: many times what they take, on a machine that is shared."""
-        return LEAST_LIMIT + SLOWER * self.seen.seconds
+    def limit(self, chosen: Sequence[str]) -> float:
+        """Seconds for tests of one mutant: many times what they take, on a machine that is shared."""
+        return LEAST_LIMIT + SLOWER * sum(float(self.seen.tests[name]["s"]) for name in chosen)
 
 
-def prepare(group: Group, subjects: Sequence[Subject]) -> dict[Subject, Prepared]:
-    """Import what the tests need, run them once without a mutant, watched. Raises BaselineError.
+def prepare(group: Group, subjects: Sequence[Subject], warm: Warm) -> dict[Subject, Prepared]:
+    """Run the tests that are collected once without a mutant, watched. Raises BaselineError.
 
     The subjects share their tests.
     """
     tests = subjects[0].tests
     # All files of these tests, so that what was seen serves every part of a sample.
     paths = tuple(s.path for s in group.subjects if s.tests == tests)
-    if warm_up(tests):
-        raise BaselineError(f"{' '.join(tests)} cannot be collected")
     notes = NOTES / f"{_hash_of(tests, paths, group.without)}.json"
     if not notes.exists():
         NOTES.mkdir(parents=True, exist_ok=True)
         union = frozenset[str]().union(*(dependants(module_of(path)) for path in paths))
         watched = Session(tests, union, without=group.without, watched=paths, notes=notes)
-        trial = Trial(watched, Change(paths[0]), 20 * group.limit)
+        trial = Trial(partial(watched.run, Change(paths[0])), 20 * group.limit)
         if trial.wait() != SURVIVED:
             notes.unlink(missing_ok=True)
             told = trial.output.decode(errors="replace")[-3000:]
             raise BaselineError(f"{' '.join(tests)} fail without a mutant:\n{told}")
-    stale = {s: frozenset(dependants(module_of(s.path))) for s in subjects}
     seen = Seen.read(notes)
-    return {s: Prepared(Session(tests, stale[s], without=group.without), seen, s) for s in subjects}
+    alive = Alive(ROOT / s.path for s in subjects if s.is_module)
+    sessions = {
+        s: Session(tests, frozenset(dependants(module_of(s.path))), without=group.without) for s in subjects
+    }
+    return {s: Prepared(warm, alive, sessions[s], seen, s) for s in subjects}
 
 
 def _hash_of(tests: Sequence[str], paths: Sequence[str], without: Sequence[str]) -> str:
@@ -131,42 +149,72 @@ def module_of(path: str) -> str:
     return path.removesuffix(".py").replace("/", ".") if path.endswith(".py") else TABLES_MODULE
 
 
-def attempt(group: Group, ready: Prepared, mutant: Mutant) -> Iterator[Trial]:
-    """First the tests that see the changed function, quickest first, then all others."""
+def attempt(group: Group, ready: Prepared, mutant: Mutant, effort: float) -> Iterator[Trial]:
+    """First the tests that see the changed function, quickest first, then all others.
+
+    With an effort of so many seconds, no more than the first of them that fit in.
+    """
     subject = ready.subject
     change = change_of(group, subject, mutant)
     seeing = tuple(ready.seen.by(subject.path, subject.text, mutant.line)) if subject.is_module else ()
+    swap = _swap(ready, change, mutant)
+
+    def trial(chosen: tuple[str, ...]) -> Trial:
+        anew = replace(ready.session, chosen=chosen)
+        work = partial(anew.run, change) if swap is None else partial(ready.warm.run, chosen, swap)
+        return Trial(work, ready.limit(chosen))
+
+    everything = isinf(effort)
     if seeing:
-        yield Trial(replace(ready.session, chosen=seeing), change, ready.limit)
-    others = replace(ready.session, excluded=seeing)
-    if len(seeing) < len(ready.seen.tests):
-        yield Trial(others, change, ready.limit)
+        seconds = [ready.seen.tests[name]["s"] for name in seeing]
+        yield trial(seeing if everything else seeing[: within(seconds, effort)])
+    others = tuple(name for name in ready.seen.tests if name not in seeing)
+    if others and (everything or not subject.is_module):
+        yield trial(others)
 
 
-def _try_modules(group: Group, jobs: Sequence[Job], workers: int, ends: float) -> Iterator[Result]:
+def _swap(ready: Prepared, change: Change, mutant: Mutant) -> Swap | None:
+    """The functions that a change touches, where it is done by exchanging their code."""
+    subject = ready.subject
+    if change.tree is None or ready.seen.runs_at_import(subject.path, subject.text, mutant.line):
+        return None
+    return ready.alive.swap(ROOT / subject.path, subject.text, change.tree)
+
+
+def _try_modules(
+    group: Group, jobs: Sequence[Job], workers: int, effort: float, ends: float, told: Told
+) -> None:
     """Files with the same tests together, so that what their mutants share is prepared once."""
-    together: dict[tuple[str, ...], list[Subject]] = {}
-    for subject in dict.fromkeys(subject for subject, _ in jobs):
-        together.setdefault(subject.tests, []).append(subject)
-    for subjects in together.values():
+    together: dict[tuple[str, ...], list[Job]] = {}
+    for job in jobs:
+        together.setdefault(job[0].tests, []).append(job)
+    for tests, of_these in together.items():
         if time.monotonic() > ends:
             return
-        ready = prepare(group, subjects)
-        waiting = [job for job in jobs if job[0] in ready][::-1]
-        running: list[_Running] = []
-        while waiting or running:
-            if time.monotonic() > ends:
-                waiting = []
-            while waiting and len(running) < workers:
-                subject, mutant = waiting.pop()
-                running.append(_Running(mutant, attempt(group, ready[subject], mutant)))
-            if not running:
+
+        def then(warm: Warm, of_these: list[Job] = of_these) -> None:
+            ready = prepare(group, list(dict.fromkeys(subject for subject, _ in of_these)), warm)
+            waiting = (_Running(m, attempt(group, ready[s], m, effort)) for s, m in of_these)
+            _try_all(waiting, workers, ends, told)
+
+        if refused := collected(tests, group.without, then):
+            raise BaselineError(f"{' '.join(tests)} cannot be collected:\n{refused}")
+
+
+def _try_all(waiting: Iterator[_Running], workers: int, ends: float, told: Told) -> None:
+    running: list[_Running] = []
+    while True:
+        while len(running) < workers and time.monotonic() <= ends:
+            if (begun := next(waiting, None)) is None:
                 break
-            first = running.pop(0)
-            if first.wait() == SURVIVED and first.go_on():
-                running.append(first)
-            else:
-                yield Result(first.mutant, first.outcome, first.seconds)
+            running.append(begun)
+        if not running:
+            return
+        first = running.pop(0)
+        if first.wait() == SURVIVED and first.go_on():
+            running.append(first)
+        else:
+            told(Result(first.mutant, first.outcome, first.seconds))
 
 
 class _Running:
@@ -191,10 +239,12 @@ class _Running:
         return self.outcome
 
 
-def _try_shaders(group: Group, jobs: Sequence[Job], workers: int, ends: float) -> Iterator[Result]:
+def _try_shaders(group: Group, jobs: Sequence[Job], workers: int, ends: float, told: Told) -> None:
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         tasks = [(group, subject, mutant, ends) for subject, mutant in jobs]
-        yield from (result for result in pool.map(_try_shader, tasks) if result is not None)
+        for result in pool.map(_try_shader, tasks):
+            if result is not None:
+                told(result)
 
 
 def _try_shader(task: tuple[Group, Subject, Mutant, float]) -> Result | None:

@@ -12,7 +12,7 @@ import json
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -60,12 +60,21 @@ class Selection:
 
 
 class Watch:
-    """A pytest plugin that notes the calls of every test, and how long it took."""
+    """A pytest plugin that notes the calls of every test, and how long it took; and the calls before any."""
 
     def __init__(self, root: Path, paths: Sequence[str]) -> None:
         self.paths = {str(root / path): path for path in paths}
         self.tests: dict[str, dict[str, Any]] = {}
         self.calls: set[tuple[str, int]] = set()
+        self.imported: dict[str, list[int]] = {}
+
+    def begin(self) -> None:
+        """Note what is called while modules are imported and tests collected."""
+        sys.settrace(self._on_call)
+
+    def pytest_collection_finish(self) -> None:
+        sys.settrace(None)
+        self.imported = self._by_file()
 
     def _on_call(self, frame: FrameType, event: str, argument: Any) -> None:
         code = frame.f_code
@@ -81,26 +90,31 @@ class Watch:
             return (yield)
         finally:
             sys.settrace(None)
-            found: dict[str, list[int]] = {}
-            for path, line in self.calls:
-                found.setdefault(path, []).append(line)
-            self.tests[item.nodeid] = {"s": time.perf_counter() - started, "calls": found}
+            self.tests[item.nodeid] = {"s": time.perf_counter() - started, "calls": self._by_file()}
+
+    def _by_file(self) -> dict[str, list[int]]:
+        found: dict[str, list[int]] = {}
+        for path, line in self.calls:
+            found.setdefault(path, []).append(line)
+        return found
 
     def write(self, path: Path) -> None:
         """Keep what was seen for another process."""
-        path.write_text(json.dumps(self.tests), encoding="utf-8")
+        told = {"tests": self.tests, "imported": self.imported}
+        path.write_text(json.dumps(told), encoding="utf-8")
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What Watch has written."""
+    """What Watch has written: seconds and calls of every test, and the calls of imports."""
 
     tests: dict[str, dict[str, Any]]
+    imported: dict[str, list[int]] = field(default_factory=dict)
 
     @classmethod
     def read(cls, path: Path) -> Seen:
         """From a file of Watch.write."""
-        return cls(json.loads(path.read_text(encoding="utf-8")))
+        return cls(**json.loads(path.read_text(encoding="utf-8")))
 
     @property
     def seconds(self) -> float:
@@ -117,12 +131,23 @@ class Seen:
         }
         return sorted(seeing, key=lambda name: seeing[name])
 
+    def runs_at_import(self, path: str, text: str, line: int) -> bool:
+        """Whether a function around a line runs while modules are imported, or there is none."""
+        called = self.imported.get(path, ())
+        return not (around := functions_around(text, line)) or any(first in called for first, _ in around)
+
 
 def function_around(text: str, line: int) -> tuple[int, int]:
     """First and last line of the innermost function that holds a line; of the whole file if none does."""
-    ends = [(0, len(text.splitlines()))]
+    return [(0, len(text.splitlines())), *functions_around(text, line)][-1]
+
+
+def functions_around(text: str, line: int) -> list[tuple[int, int]]:
+    """First and last lines of the functions that hold a line, decorators included, the outermost first."""
+    found: list[tuple[int, int]] = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.FunctionDef):
-            first = min([node.lineno, *(d.lineno for d in node.decorator_list)])
-            ends.append((first, node.end_lineno or node.lineno))
-    return max((e for e in ends if e[0] <= line <= e[1]), key=lambda e: (e[0], -e[1]))
+            ends = min([node.lineno, *(d.lineno for d in node.decorator_list)]), node.end_lineno or 0
+            if ends[0] <= line <= ends[1]:
+                found.append(ends)
+    return sorted(found)

@@ -107,25 +107,38 @@ def test_mutants_of_a_shading_function() -> None:
     }
 
 
+# What comes of each change: all that depends on it imported anew, and only functions exchanged.
 CHANGES = {
-    "harmless": ("", "survived"),
-    "deadly": ("int(lane) -> int(lane) + 1", "killed"),
-    "broken": ("import dataclass -> import nothing", "killed"),
-    "endless": ("parts = -> sum(1 for _ in iter(int, 1)); parts =", "timed out"),
+    "the same": ("", ["survived", None]),
+    "harmless": ("return int(text) -> return int(text) + 0", ["survived", "survived"]),
+    "deadly": ("return int(text) -> return int(text) + 1", ["killed", "killed"]),
+    "broken": ("import dataclass -> import nothing", ["killed", None]),
+    "endless": ("parts = -> sum(1 for _ in iter(int, 1)); parts =", ["timed out", "timed out"]),
 }
 TRIALS = """
 import ast, json, sys
-from conformance.mutation.isolated import Change, Session, Trial, dependants, warm_up
+from functools import partial
+from conformance.mutation.isolated import ROOT, Change, Session, Trial, dependants
+from conformance.mutation.swapped import Alive
+from conformance.mutation.warm import collected
 
-tests, told = [sys.argv[1]], {}
-assert warm_up(tests) == 0
+tests, told = (sys.argv[1],), {}
 path = "conformance/check/identity.py"
-session = Session(tuple(tests), frozenset(dependants("conformance.check.identity")))
-for name, change in json.loads(sys.argv[2]).items():
-    old, _, new = change.partition(" -> ")
-    text = open(path).read()
-    tree = ast.parse(text.replace(old, new, 1) if change else text)
-    told[name] = Trial(session, Change(path, tree), 20 if name != "endless" else 3).wait()
+
+def then(warm):
+    session = Session(tests, frozenset(dependants("conformance.check.identity")))
+    alive, text = Alive([ROOT / path]), open(path).read()
+    chosen = [item.nodeid for item in warm.session.items]
+    for name, change in json.loads(sys.argv[2]).items():
+        old, _, new = change.partition(" -> ")
+        tree = ast.parse(text.replace(old, new, 1) if change else text)
+        limit = 20 if name != "endless" else 3
+        anew = Trial(partial(session.run, Change(path, tree)), limit).wait()
+        swap = alive.swap(ROOT / path, text, tree)
+        swapped = swap and Trial(partial(warm.run, chosen, swap), limit).wait()
+        told[name] = [anew, swapped]
+
+assert not collected(tests, (), then)
 print(json.dumps(told))
 """
 

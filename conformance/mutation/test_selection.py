@@ -9,6 +9,9 @@ Plan.
 
 from __future__ import annotations
 
+import ast
+import importlib
+import sys
 from pathlib import Path
 
 import pytest
@@ -21,6 +24,7 @@ from conformance.mutation.report import overview
 from conformance.mutation.run import Result
 from conformance.mutation.seen import Seen, Watch, function_around
 from conformance.mutation.sites import Mutant
+from conformance.mutation.swapped import Alive, within
 
 pytest_plugins = ["pytester"]
 
@@ -60,6 +64,66 @@ def test_tests_that_see_a_function_come_quickest_first() -> None:
     assert seen.by("a.py", TEXT, 13) == ["elsewhere"]
     assert seen.by("a.py", TEXT, 1) == ["elsewhere", "quick", "slow"]
     assert seen.seconds == 4.6
+
+
+@pytest.mark.parametrize(
+    ("called", "line", "expected"),
+    [(6, 7, True), (4, 7, True), (4, 9, True), (12, 7, False), (12, 1, True)],
+    ids=["the inner one", "outer", "its own", "another", "no function"],
+)
+def test_functions_that_run_at_import(called: int, line: int, expected: bool) -> None:
+    """An inner function is made by the outer one: what that has made at import keeps its code."""
+    seen = Seen({}, {"a.py": [called]})
+    assert seen.runs_at_import("a.py", TEXT, line) is expected
+
+
+SWAPPED = """
+import functools
+LIMIT = 2
+class Class:
+    field: int = 1
+    def method(self):
+        return self.field + 1
+@functools.cache
+def cached():
+    return [n + 1 for n in (1, 2)]
+def made():
+    return (lambda: 5)()
+pair = (lambda: 1, lambda: 2)
+"""
+CHANGES = {
+    "method": ("self.field + 1", "self.field + 2", (3, [2, 3], 5)),
+    "behind a decorator": ("n + 1", "n + 3", (2, [4, 5], 5)),
+    "inner": ("lambda: 5", "lambda: 6", (2, [2, 3], 6)),
+    "module": ("LIMIT = 2", "LIMIT = 3", None),
+    "field": ("field: int = 1", "field: int = 2", None),
+    "default": ("def made()", "def made(a=1)", None),
+    "lambdas of one line": ("lambda: 1", "lambda: 4", None),
+    "nothing": ("", "", None),
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_code_of_functions_is_exchanged(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What it does to the three functions of SWAPPED; None where more than functions would differ."""
+    old, new, expected = CHANGES[name]
+    file = tmp_path / "swapped_module.py"
+    file.write_text(SWAPPED, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "swapped_module", raising=False)
+    module = importlib.import_module("swapped_module")
+    swap = Alive([file]).swap(file, SWAPPED, ast.parse(SWAPPED.replace(old, new, 1)))
+    assert (swap is None) == (expected is None)
+    if swap is not None:
+        swap.put()
+        assert (module.Class().method(), module.cached(), module.made()) == expected
+
+
+def test_tests_within_an_effort() -> None:
+    """As many of the quickest as fit, and always one."""
+    assert within([1.0, 2.0, 4.0], 3.0) == 2
+    assert within([1.0, 2.0, 4.0], 0.5) == 1
+    assert within([1.0, 2.0, 4.0], 70.0) == 3
 
 
 TESTS = """
