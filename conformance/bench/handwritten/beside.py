@@ -17,6 +17,7 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import leaves
 from codegen.kernels import kernel
 from codegen.library import Library
+from codegen.passes.analysis.operations import operations
 from codegen.scene.description.document import read_scene
 from codegen.scene.general import general_function
 from codegen.scene.proof.errors import as_floats
@@ -41,6 +42,7 @@ class Row:
     ns, low, high        median and quartiles of nanoseconds per evaluation
     ordinary, hard       largest error in half steps of 8 bits over uniform points and over hard cases
     non_finite           results that are no number, of all points
+    operations           of an emitted function and all that it calls, None of a hand-written one
     """
 
     function: str
@@ -50,6 +52,7 @@ class Row:
     ordinary: float
     hard: float
     non_finite: int
+    operations: int | None
 
 
 def handwritten(target: str) -> str:
@@ -86,6 +89,7 @@ def rows(library: Library, runtime: Any, target: str) -> list[Row]:
                 float(off[finite & ~points.hard].max()),
                 float(off[finite & points.hard].max()),
                 int((~finite).sum()),
+                None if name in written else sum(operations(whole.function(name), whole).values()),
             )
         )
     return found

@@ -1,4 +1,7 @@
-"""The hand-written fur beside which scenes are timed: it is the same model, on every target."""
+"""The hand-written fur beside which scenes are timed: it is the same model, on every target.
+
+A record is shown as tables, and the page shows what is recorded.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from codegen.scene.description.document import read_scene
 from codegen.scene.general import general_function
 from codegen.scene.proof.errors import reference_values
 from codegen.scene.proof.points import draw
-from conformance.bench.handwritten import beside
+from conformance.bench.handwritten import beside, record
 from conformance.unit.support.drivers import need
 from targets import TARGETS, open_runtime
 
@@ -35,3 +38,28 @@ def test_the_hand_written_functions_are_the_same_model(target: str) -> None:
     # Light and viewer on one side of the hair leave few digits of a plain sine, so the median judges.
     assert np.median(off) <= MODEL
     assert np.quantile(off, 0.99) <= MODEL
+
+
+def row(name: str, ns: float, operations: int | None) -> beside.Row:
+    return beside.Row(name, ns, ns / 2.0, ns * 2.0, 0.123456, 2.0, 3, operations)
+
+
+def test_a_record_as_tables() -> None:
+    rows = [row("scene_shade", 1.5, 96), row(beside.BY_HAND, 3.0, None)]
+    told = record.tables(
+        {"method": "So", "date": "today", **record.as_data({}, {"glsl": ("a driver", rows)})}
+    )
+    assert told.splitlines() == [
+        "**glsl**, a driver",
+        "",
+        "| function | ns [quartiles] | of by hand | operations | ordinary | hard | not finite |",
+        "|---|---:|---:|---:|---:|---:|---:|",
+        "| `scene_shade` | 1.5 [0.75, 3] | 0.50 | 96 | 0.12 | 2 | 3 |",
+        "| by hand | 3 [1.5, 6] | 1.00 |  | 0.12 | 2 | 3 |",
+        "",
+        "So. today.",
+    ]
+
+
+def test_the_page_shows_what_is_recorded() -> None:
+    assert record.tables(record.read()) in record.README.read_text(encoding="utf-8")
