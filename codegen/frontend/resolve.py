@@ -283,10 +283,11 @@ class Resolver:
                     func=ast.Name(id=("variant" | "printed") as kind),
                     args=[ast.Constant(value=str() as base)],
                 ):
-                    if base not in self._function_names or base == node.name:
-                        raise file.error(
-                            decorator, f'unknown base "{base}"{nearest(base, self.function_names())}'
-                        )
+                    if base == node.name:
+                        raise file.error(decorator, f'"{base}" cannot be its own base')
+                    if base not in self._function_names:
+                        near = nearest(base, (n for n in self.function_names() if n != node.name))
+                        raise file.error(decorator, f'unknown base "{base}"{near}')
                     return kind, base
                 case _:
                     raise file.error(
