@@ -152,58 +152,54 @@ class _Body:
             found.append(made)
         return tuple(found)
 
-    def element(self, parts: Iterable[ir.Expr], scope: Mapping[str, Type]) -> Type:
-        """f32 where the parts hold floats and all of them, literals aside, are f32; else f16."""
+    def element(self, parts: Iterable[ir.Expr], scope: Mapping[str, Type]) -> Type | None:
+        """f32 where there are floats among the parts and all of them, literals aside, are f32; else f16;
+        None for literals alone.
+        """
         found = {self.natural(part, scope) for part in parts if _is_float(part.type)} - {None}
-        return F32 if found == {F32} else F16
+        return None if not found else F32 if found == {F32} else F16
 
     def natural(self, e: ir.Expr, scope: Mapping[str, Type]) -> Type | None:
-        """The element that a float expression has by itself; None for literals, which have none."""
+        """The element that the floats of an expression have by themselves; literals have None."""
         match e:
-            case ir.Const():
-                return None
             case ir.Var():
                 return element_of(scope[e.name])
             case ir.Call():
                 return F32 if self.calls_single(e, scope) else F16
             case ir.Member():
                 return F16
-            case ir.Convert():
-                return None if not _is_float(e.operand.type) else self.natural(e.operand, scope)
             case ir.Builtin() if not BUILTINS[e.op].half:
                 return F32
             case _:
-                parts = [p for p in ir.children(e) if _is_float(p.type)]
-                natural = {self.natural(p, scope) for p in parts} - {None}
-                return None if not natural else F32 if natural == {F32} else F16
+                return self.element(ir.children(e), scope)
 
     def calls_single(self, e: ir.Call, scope: Mapping[str, Type]) -> bool:
-        floats = [a for a in e.args if _is_float(a.type)]
-        natural = {self.natural(a, scope) for a in floats}
-        structs = any(isinstance(a.type, Struct) for a in e.args)
-        return natural - {None} == {F32} and not structs and self.halver.has_single(e.function)
+        """Whether all arguments, literals aside, are f32, and the function's f32 text can be called."""
+        return self.element(e.args, scope) == F32 and self.halver.has_single(e.function)
 
     def own(self, e: ir.Expr, scope: Mapping[str, Type]) -> ir.Expr:
         """The expression with the element that it has by itself."""
-        return self.lower(e, scope, self.element((e,), scope))
+        return self.lower(e, scope, self.natural(e, scope))
 
     def coerced(self, e: ir.Expr, wanted: Type, scope: Mapping[str, Type]) -> ir.Expr:
         """The expression as a value of the wanted type; literals take it at once."""
-        if not _is_float(wanted):
-            return self.own(e, scope)
         if self.natural(e, scope) is None:
             return self.lower(e, scope, element_of(wanted))
         made = self.own(e, scope)
         return made if made.type == wanted else ir.Convert(wanted, made)
 
-    def lower(self, e: ir.Expr, scope: Mapping[str, Type], element: Type) -> ir.Expr:
-        """The expression; floats in it become `element`, which must be what it has by itself, or fits it."""
-        type_ = half_of(e.type) if element == F16 or isinstance(e.type, Struct) else e.type
+    def lower(self, e: ir.Expr, scope: Mapping[str, Type], element: Type | None) -> ir.Expr:
+        """The expression with this element: the one that it has by itself, or that literals take here.
+
+        Whatever is not f32 makes halves of floats; structs hold halves in any case.
+        """
+
+        def becomes(type_: Type) -> Type:
+            return type_ if element == F32 and not isinstance(type_, Struct) else half_of(type_)
+
         match e:
             case ir.Const():
-                return self.constant(e) if e.type == F32 and element == F16 else e
-            case ir.Var():
-                return replace(e, type=scope[e.name])
+                return e if becomes(e.type) == e.type else self.constant(e)
             case ir.Call():
                 return self.call(e, scope)
             case ir.Construct() if isinstance(e.type, Struct):
@@ -211,22 +207,11 @@ class _Body:
                 assert isinstance(made, Struct)
                 pairs = zip(e.args, made.fields, strict=True)
                 return ir.Construct(made, tuple(self.coerced(a, f.type, scope) for a, f in pairs))
-            case ir.Member():
-                return replace(e, type=type_, value=self.own(e.value, scope))
             case ir.Builtin() if not BUILTINS[e.op].half:
                 return replace(e, args=tuple(self.coerced(a, a.type, scope) for a in e.args))
-            case ir.Convert() if not _is_float(e.operand.type):
-                return replace(e, type=type_, operand=self.own(e.operand, scope))
-            case ir.Select():
-                condition = self.own(e.condition, scope)
-                sides = [self.coerced(side, type_, scope) for side in (e.if_true, e.if_false)]
-                return ir.Select(type_, condition, sides[0], sides[1])
             case _:
-                parts = ir.children(e)
-                own = element if _is_float(e.type) else self.element(parts, scope)
-                wanted = [half_of(p.type) if own == F16 else p.type for p in parts]
-                made_parts = tuple(self.coerced(p, w, scope) for p, w in zip(parts, wanted, strict=True))
-                return replace(ir.rebuild(e, made_parts), type=type_)
+                parts = tuple(self.coerced(p, becomes(p.type), scope) for p in ir.children(e))
+                return replace(ir.rebuild(e, parts), type=becomes(e.type))
 
     def call(self, e: ir.Call, scope: Mapping[str, Type]) -> ir.Expr:
         if self.calls_single(e, scope):
