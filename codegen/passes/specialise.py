@@ -143,7 +143,6 @@ def specialise(
         library, values, keep, unroll, (*asked, _noting(left_whole)), checked(library, variants)
     )
     flow = pruned(inliner.flow(function, arguments))
-    assert flow.result is not None
     left = used_parameters(values, [*roots(flow.items), *leaves(flow.result)])
     names = parameter_names(left, function)
     body, origins = statements(values, flow, function.returns, names, function.place.line)

@@ -49,7 +49,6 @@ def probe(name: str) -> tuple[Values, list[ir.Expr], ir.Function]:
     values = Values(rules=(components,))
     subject = Subject(function)
     flow = Inliner(LIBRARY, values).flow(function, subject.arguments(values))
-    assert flow.result is not None
     order = place(flow, joined(values, function.returns, flow.result)).order[::-1]
     wanted = [e for e in order if not isinstance(e.type, Struct) and ir.children(e)]
     names = {id(e): f"part{k}" for k, e in enumerate(wanted)}

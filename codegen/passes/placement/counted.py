@@ -18,7 +18,6 @@ from codegen.passes.ssa.values import Values
 
 def operations_of(values: Values, flow: Flow, returns: Type) -> int:
     """The operations of the statements that `schedule.statements` makes of a flow."""
-    assert flow.result is not None
     placement = place(flow, joined(values, returns, flow.result))
     named = named_values(values, placement)
     often: dict[int, int] = {}

@@ -20,7 +20,6 @@ NAME = "dead"
 
 def pruned(flow: Flow) -> Flow:
     """The flow without branches, loops and carried values that the result does not need."""
-    assert flow.result is not None
     makers = dict(_makers(flow.items))
     needed: set[str] = set()
     waiting = list(leaves(flow.result))

@@ -22,7 +22,6 @@ def statements(
     parameters  the final name of each parameter by its path
     line        what the statements are numbered from
     """
-    assert flow.result is not None
     result = joined(values, returns, flow.result)
     writer = _Writer(values, place(flow, result), parameters, line)
     return writer.body(flow.items, result), writer.origins

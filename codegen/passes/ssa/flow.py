@@ -7,7 +7,7 @@ so it may be computed anywhere those are known; codegen.passes.placement.schedul
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from codegen.ir import nodes as ir
 from codegen.passes.ssa.values import Value
@@ -64,12 +64,12 @@ Item = Branch | Loop
 class Flow:
     """Branches and loops in order, and the function's value."""
 
-    items: list[Item] = field(default_factory=list)
-    result: Value | None = None
+    items: list[Item]
+    result: Value
 
 
 def roots(items: list[Item]) -> Iterator[ir.Expr]:
-    """Every value that branches and loops use, nested ones included."""
+    """Every value that branches and loops use, nested ones included, in the order of the program."""
     for item in items:
         if isinstance(item, Branch):
             yield item.condition
