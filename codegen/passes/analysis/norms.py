@@ -79,18 +79,16 @@ class Lengths:
 
     def product(self, a: ir.Expr, b: ir.Expr) -> tuple[float, float]:
         """The least and the largest value of dot(a, b) as any target computes it."""
-        (_, most_a), (_, most_b) = self.operand(a), self.operand(b)
+        (least, most_a), (_, most_b) = self.operand(a), self.operand(b)
         slack = PRODUCT * max(most_a, most_b) ** 2
         most = most_a * most_b + slack
-        if a is b:
-            return max(self.operand(a)[0] ** 2 - slack, 0.0) if math.isfinite(slack) else 0.0, most
-        return -most, most
+        return (max(least**2 - slack, 0.0) if a is b else -most), most
 
     def operand(self, e: ir.Expr) -> tuple[float, float]:
         """The lengths of an operand, for which the ranges of its components are known too."""
         least, most = self.of(e)
         if isinstance(e.type, Vector):
-            sizes = [max(abs(b.low), abs(b.high)) for b in self.bounds(e)]
+            sizes = [max(-b.low, b.high) for b in self.bounds(e)]
             most = min(most, math.hypot(*sizes) * (1.0 + ROUNDING))
         return least, most
 
@@ -149,11 +147,12 @@ class Lengths:
         if op == "*" and _normalises(a, b):
             return 0.0, 1.0 + UNIT_SLACK
         (factor,) = self.bounds(a)
-        near = 0.0 if factor.low <= 0.0 <= factor.high else min(abs(factor.low), abs(factor.high))
-        far = max(abs(factor.low), abs(factor.high))
+        near, far = max(factor.low, -factor.high, 0.0), max(-factor.low, factor.high)
         least, most = self.operand(b)
         if op == "/":
-            near, far = (1.0 / far if far > 0.0 else 0.0), (1.0 / near if near > 0.0 else math.inf)
+            if near == 0.0:
+                return 0.0, math.inf
+            near, far = 1.0 / far, 1.0 / near
         if not (math.isfinite(far) and math.isfinite(most)):
             return 0.0, math.inf
         return _rounded(near * least, far * most)

@@ -17,19 +17,17 @@ WHY = "finite: products with 0 are 0; the sum that is left is one of the orders 
 def zero_components(values: Values, e: ir.Expr) -> Rewrite | None:
     """Expands dot and cross where an operand has zeros."""
     match e:
-        case ir.Builtin(op="dot", args=(a, b)) if _has_zero(values, a) or _has_zero(values, b):
+        case ir.Builtin(op="dot", args=(a, b)) if _has_zero(a) or _has_zero(b):
             return Rewrite(_dot(values, a, b), NAME, WHY)
-        case ir.Builtin(op="cross", args=(a, b)) if _has_zero(values, a) or _has_zero(values, b):
+        case ir.Builtin(op="cross", args=(a, b)) if _has_zero(a) or _has_zero(b):
             pairs = ((1, 2), (2, 0), (0, 1))
             parts = tuple(_minor(values, a, b, i, j) for i, j in pairs)
             return Rewrite(values.build(ir.Construct(e.type, parts)), NAME, WHY)
     return None
 
 
-def _has_zero(values: Values, e: ir.Expr) -> bool:
-    if not isinstance(e, ir.Construct) or not isinstance(e.type, Vector):
-        return False
-    return any(constant_components(values.component(e, k)) == (0.0,) for k in range(e.type.size))
+def _has_zero(e: ir.Expr) -> bool:
+    return isinstance(e, ir.Construct) and any(constant_components(a) == (0.0,) for a in e.args)
 
 
 def _dot(values: Values, a: ir.Expr, b: ir.Expr) -> ir.Expr:

@@ -31,22 +31,25 @@ def constants(values: Values, e: ir.Expr) -> Rewrite | None:
         return None
     if isinstance(e, ir.Select):
         return _decided(e)
-    operands = [constant_components(c) for c in ir.children(e)]
-    if any(o is None for o in operands):
-        return None
-    columns = [_column(c.type, o) for c, o in zip(ir.children(e), operands, strict=True) if o is not None]
+    columns: list[Any] = []
+    for c in ir.children(e):
+        operand = constant_components(c)
+        if operand is None:
+            return None
+        columns.append(_column(c.type, operand))
     with np.errstate(all="ignore"):
         found = _computed(e, columns)
     if found is None:
         return None
     element = e.type.element if isinstance(e.type, Vector) else e.type
     assert isinstance(element, Scalar)
-    with np.errstate(over="ignore"):
-        numbers = [_number(element, x) for x in np.atleast_1d(found).ravel().tolist()]
-    if any(n is None for n in numbers):
-        return None
-    parts = tuple(values.build(ir.Const(element, n)) for n in numbers if n is not None)
-    whole = values.build(ir.Construct(e.type, parts)) if isinstance(e.type, Vector) else parts[0]
+    parts: list[ir.Expr] = []
+    for x in np.atleast_1d(found).tolist():
+        number = _number(element, x)
+        if number is None:
+            return None
+        parts.append(values.build(ir.Const(element, number)))
+    whole = values.build(ir.Construct(e.type, tuple(parts))) if isinstance(e.type, Vector) else parts[0]
     return Rewrite(whole, NAME, FLOAT if element == F32 else WHOLE)
 
 
@@ -58,11 +61,10 @@ def _decided(e: ir.Select) -> Rewrite | None:
 
 
 def _column(type_: Type, numbers: tuple[float | int | bool, ...]) -> Any:
+    """A value as one lane: of shape (1,), or (n,) for a vector; a scalar beside a vector widens by itself."""
     element = type_.element if isinstance(type_, Vector) else type_
     assert isinstance(element, Scalar)
-    dtype = np.float64 if element == F32 else INTEGER_TYPES[element]
-    a = np.array(numbers, dtype)
-    return a[None, :] if isinstance(type_, Vector) else a
+    return np.array(numbers, np.float64 if element == F32 else INTEGER_TYPES[element])
 
 
 def _computed(e: ir.Expr, columns: list[Any]) -> Any:
@@ -76,10 +78,8 @@ def _computed(e: ir.Expr, columns: list[Any]) -> Any:
             return OPERATORS[e.op].meaning(m, columns[0])
         case ir.Binary():
             a, b = columns
-            if e.op in ("//", "%") and (b == 0).any():
+            if e.op in ("//", "%") and b[0] == 0:
                 return None
-            if a.ndim != b.ndim:
-                a, b = (a[:, None], b) if a.ndim < b.ndim else (a, b[:, None])
             return OPERATORS[e.op].meaning(m, a, b)
         case _:
             return None
@@ -89,9 +89,9 @@ def _converted(type_: Type, a: Any) -> Any:
     if type_ == F32:
         return a.astype(np.float64)
     if a.dtype.kind == "f":
-        least, most = (-(2**31), 2**31 - 1) if type_ == I32 else (0, 2**32 - 1)
+        least, beyond = (-(2**31), 2**31) if type_ == I32 else (0, 2**32)
         whole = np.trunc(a)
-        return None if (whole < least).any() or (whole > most).any() else whole.astype(np.int64)
+        return whole.astype(np.int64) if least <= whole[0] < beyond else None
     return a.astype(np.int64).astype(np.uint32 if type_ == U32 else np.int32)
 
 
@@ -100,7 +100,8 @@ def _number(element: Scalar, x: Any) -> float | int | bool | None:
         return bool(x)
     if element != F32:
         return int(x)
-    value = float(np.float32(x))
+    with np.errstate(over="ignore"):
+        value = float(np.float32(x))
     if not abs(value) <= LARGEST or 0.0 < abs(value) < SMALLEST:
         return None
     return value + 0.0  # -0 becomes 0: nothing relies on the sign of a zero
