@@ -1,7 +1,9 @@
 """Values of one flow: which are one value, how a report shows them, and the names that locals get.
 
 Plan.
-  one value  operands of commutative operations in either order; whatever else differs is another value
+  one value  operands of commutative operations in either order; whatever else differs is another value;
+             each is simplified once by the rules that hold
+  short      what makes and takes apart values, and everything that a flow uses
   log        a step is noted once for a place, again for another
   text       every kind of expression as a person writes it, to a depth, with names for what has one
   names      every operation on floats has a word of its own, that says what its result is; names are given
@@ -22,8 +24,19 @@ from codegen.names import reserved
 from codegen.ops import BUILTINS, OPERATORS
 from codegen.passes.placement.common import Names
 from codegen.passes.rules.fold import constants
+from codegen.passes.ssa.flow import Branch, Carried, Loop, Merge, roots
 from codegen.passes.ssa.text import DEPTH, show
-from codegen.passes.ssa.values import FIELD, LOCAL, PARAMETER, Rewrite, Values, any_element
+from codegen.passes.ssa.values import (
+    CALL,
+    FIELD,
+    LOCAL,
+    PARAMETER,
+    Rewrite,
+    Values,
+    any_element,
+    constant_components,
+    leaves,
+)
 
 PAIR = Struct("Pair", (Field("first", F32), Field("second", VEC3)))
 ARRAY = array_of(F32, 3)
@@ -96,6 +109,110 @@ def test_either_order_is_one_value_where_it_is_the_same() -> None:
         assert a is b
 
 
+def test_values_are_simplified_once_and_anew_by_other_rules() -> None:
+    met: list[ir.Expr] = []
+
+    def meeting(values: Values, e: ir.Expr) -> Rewrite | None:
+        met.append(e)
+        return None
+
+    values = Values(rules=(meeting,))
+    twice = [values.build(ir.Binary(F32, "+", *pair)) for pair in ((X, Y), (X, Y), (Y, X))]
+    assert met == [SUM]
+    assert twice[0] is twice[1] is twice[2]
+    values.simplify_by((meeting,))
+    values.build(SUM)
+    assert met == [SUM, SUM]
+    three = ir.Binary(F32, "+", ONE, ir.Const(F32, 2.0))
+    assert values.build(three) == three
+    values.simplify_by((constants,))
+    assert values.build(three) == ir.Const(F32, 3.0)
+
+
+def test_a_tree_that_shares_its_parts_is_walked_once() -> None:
+    class Counting(Values):
+        count = 0
+
+        def build(self, e: ir.Expr) -> ir.Expr:
+            self.count += 1
+            return super().build(e)
+
+    tree: ir.Expr = X
+    for _ in range(8):
+        tree = ir.Binary(F32, "*", tree, tree)
+    values = Counting()
+    assert values.rebuild(tree) == tree
+    assert values.count == 9
+
+
+def test_kept_calls_and_their_fields_are_told_apart() -> None:
+    values = Values()
+    calls = [values.build(ir.Call(PAIR, name, (X,))) for name in ("f", "g")]
+    assert calls[0] is not calls[1]
+    fields = [values.build(ir.Member(F32, ir.Call(PAIR, "f", (X,)), name)) for name in ("first", "second")]
+    assert fields[0] is not fields[1]
+    swizzles = [values.build(ir.Swizzle(VEC2, V, c)) for c in ("xy", "yx")]
+    assert swizzles[0] is not swizzles[1]
+    assert values.build(ir.Const(F32, 1.0)) is not values.build(ir.Const(I32, 1))
+    assert values.build(ir.Const(BOOL, True)) is not values.build(ir.Const(I32, 1))
+    assert values.build(ir.Const(F32, 0.0)) is not values.build(ir.Const(F32, -0.0))
+
+
+def test_short_ways_to_values() -> None:
+    values = Values()
+    for op, a, b in (("*", V, X), ("*", X, V), ("+", V, W)):
+        assert Values().binary(op, a, b) == ir.Binary(VEC3, op, a, b)
+    assert values.binary("<", X, Y, BOOL) == ir.Binary(BOOL, "<", X, Y)
+    assert [values.component(V, k) for k in range(3)] == [ir.Swizzle(F32, V, c) for c in "xyz"]
+    assert values.component(X, 2) is X
+    assert values.splat(X, VEC3) == ir.Construct(VEC3, (X,))
+    assert values.splat(V, VEC3) is V
+    assert values.splat(X, F32) is X
+    assert values.splat(N, VEC3) is N
+    assert values.number(2, F32) == ir.Const(F32, 2.0)
+    assert values.number(2, VEC2) == ir.Construct(VEC2, (ir.Const(F32, 2.0),))
+    assert isinstance(vars(values.number(2, F32))["value"], float)
+    assert isinstance(vars(values.number(2, U32))["value"], int)
+
+
+def test_parts_of_a_value_in_order() -> None:
+    assert list(leaves(X)) == [X]
+    assert list(leaves({"a": X, "b": {"c": V, "d": Y}, "e": N})) == [X, V, Y, N]
+
+
+def test_components_of_constants() -> None:
+    two = ir.Const(F32, 2.0)
+    assert constant_components(ONE) == (1.0,)
+    assert constant_components(ir.Construct(VEC3, (two,))) == (2.0, 2.0, 2.0)
+    assert constant_components(ir.Construct(VEC2, (ONE, two))) == (1.0, 2.0)
+    for e in (X, ir.Construct(VEC2, (ONE, X)), ir.Construct(PAIR, (ONE, two)), SUM):
+        assert constant_components(e) is None
+
+
+def test_everything_that_a_flow_uses_in_order() -> None:
+    """Of a loop without a limit inside a branch inside a loop with one."""
+
+    def leaf(k: int) -> ir.Var:
+        return ir.Var(F32, f"leaf@{k}")
+
+    def value(k: int) -> ir.Expr:
+        return ir.Const(F32, float(k))
+
+    inner = Loop(leaf(0), "j", 0, 3, None, [], [Carried(leaf(1), leaf(2), "y", value(2), value(3))])
+    branch = Branch(value(1), [inner], [], [Merge(leaf(3), "z", value(4), value(5))])
+    outer = Loop(leaf(4), "i", 0, 9, value(0), [branch], [Carried(leaf(5), leaf(6), "x", value(6), value(7))])
+    assert list(roots([outer])) == [value(k) for k in range(8)]
+    swapped = Branch(value(0), [], [inner], [])
+    assert list(roots([swapped, outer]))[:4] == [value(0), value(2), value(3), value(0)]
+    assert list(roots([])) == []
+
+
+def test_a_step_outside_of_any_function() -> None:
+    values = Values()
+    values.note("fold", "1 + 1 -> 2", "exact")
+    assert [s.where for s in values.log] == [":0"]
+
+
 def test_a_step_is_noted_once_for_a_place() -> None:
     values = Values(function="f", line=3)
     for line in (3, 3, 4, 3):
@@ -132,11 +249,16 @@ def test_the_name_that_says_most_wins_and_moves_with_the_value() -> None:
     for name, rank in (("whole", PARAMETER), ("part", FIELD), ("later", FIELD), ("least", PARAMETER)):
         values.hint(e, name, rank)
     assert values.hints[id(e)].name == "part"
+    other = values.intern(QUOTIENT)
+    for rank, name in enumerate(("called", "given", "held", "mine")):
+        values.hint(other, name, (CALL, PARAMETER, FIELD, LOCAL)[rank])
+        assert values.hints[id(other)].name == name
+    assert values.show(values.intern(ir.Unary(F32, "negate", other))) == "-mine"
     values.hint(e, "mine", LOCAL)
     assert values.hints[id(e)].name == "mine"
     values.hint(X, "parameters need none", LOCAL)
     values.hint(ONE, "nor do constants", LOCAL)
-    assert set(values.hints) == {id(e)}
+    assert set(values.hints) == {id(e), id(other)}
 
     def halved(values: Values, e: ir.Expr) -> Rewrite | None:
         if e != SUM:
@@ -153,6 +275,8 @@ SHOWN: dict[str, ir.Expr] = {
     "0.5": ir.Const(F32, 0.5),
     "true": ir.Const(BOOL, True),
     "7": ir.Const(U32, 7),
+    "16777217": ir.Const(U32, 2**24 + 1),
+    "-3": ir.Const(I32, -3),
     "x": X,
     "-x": ir.Unary(F32, "negate", X),
     "not p": ir.Unary(BOOL, "not", P),
@@ -194,6 +318,7 @@ def test_whichever_element_of_an_array_is_told() -> None:
 
 
 def test_what_lies_deep_is_left_out() -> None:
+    assert DEPTH == 4, "as the sentences of reports are short"
     e: ir.Expr = X
     for _ in range(DEPTH):
         e = ir.Builtin(F32, "sin", (e,))

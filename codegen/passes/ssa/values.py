@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, I32, Array, Scalar, Type, Vector
+from codegen.ir.types import F32, I32, Array, Type, Vector
 from codegen.passes.ssa.text import show
 
 COMMUTATIVE = frozenset({"+", "*", "min", "max", "dot", "and", "or", "==", "!=", "&", "|", "^"})
@@ -147,7 +147,7 @@ class Values:
 
     def splat(self, e: ir.Expr, type_: Type) -> ir.Expr:
         """The value in a wider type, all components alike."""
-        if isinstance(type_, Vector) and isinstance(e.type, Scalar):
+        if isinstance(type_, Vector) and e.type == type_.element:
             return self.build(ir.Construct(type_, (e,)))
         return e
 
