@@ -77,8 +77,8 @@ class Subject:
             )
         if path in self.constants:
             raise UserError(f'{self.function.name}: "{path}" is given as a constant and as "{target}"')
-        if path == target or target.startswith(f"{path}.") or path.startswith(f"{target}."):
-            raise UserError(f'{self.function.name}: "{path}" cannot be "{target}", a part of itself')
+        if path == target:
+            raise UserError(f'{self.function.name}: "{path}" cannot be given as equal to itself')
         if target in self.aliases:
             last = self.aliases[target]
             raise UserError(f'{self.function.name}: "{path}" is "{target}", which is "{last}": name that one')
@@ -179,7 +179,7 @@ class Subject:
         length = math.hypot(*map(float, numbers))
         match domain:
             case Interval(low=low, high=high):
-                slack = TOLERANCE * max(abs(low), abs(high))
+                slack = TOLERANCE * max(-low, high)
                 inside = all(low - slack <= x <= high + slack for x in numbers)
             case Unit():
                 inside = abs(length - 1.0) <= TOLERANCE

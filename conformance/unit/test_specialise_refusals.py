@@ -58,7 +58,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         {"aliases": {"n": "optics.overlap"}},
         'fakefur_shade: "n" is a vec3 and cannot be "optics.overlap", a f32',
     ),
-    "alias of itself": ({"aliases": {"n": "n"}}, 'fakefur_shade: "n" cannot be "n", a part of itself'),
+    "alias of itself": ({"aliases": {"n": "n"}}, 'fakefur_shade: "n" cannot be given as equal to itself'),
     "alias of an alias": (
         {"aliases": {"n": "t", "t": "l"}},
         'fakefur_shade: "n" is "t", which is "l": name that one',
