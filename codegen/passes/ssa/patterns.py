@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, Type, Vector
+from codegen.ir.types import BOOL, F32, Type, Vector
 from codegen.ops import BUILTINS, OPERATORS
 from codegen.passes.ssa.values import COMMUTATIVE, Values, constant_components
 
@@ -157,17 +157,11 @@ def make(pattern: Pattern, found: Found, values: Values, type_: Type) -> ir.Expr
             sides = build(a, wanted), build(b, wanted)
             return values.build(ir.Select(sides[0].type, build(c, BOOL), *sides))
         made = [None if isinstance(x, Number) else build(x, wanted) for x in p.operands]
-        beside = _type_beside([x.type for x in made if x is not None], wanted)
+        beside = next((x.type for x in made if x is not None), wanted)
         parts = zip(p.operands, made, strict=True)
         return apply(values, p.op, tuple(build(x, beside) if m is None else m for x, m in parts))
 
     return values.splat(build(pattern, type_), type_)
-
-
-def _type_beside(types: list[Type], wanted: Type) -> Type:
-    """The type of numbers among operands: that of the others."""
-    wide = [t for t in types if isinstance(t, Vector)]
-    return wide[0] if wide else types[0] if types else wanted
 
 
 def apply(values: Values, op: str, operands: tuple[ir.Expr, ...]) -> ir.Expr:
@@ -175,10 +169,9 @@ def apply(values: Values, op: str, operands: tuple[ir.Expr, ...]) -> ir.Expr:
     row = BUILTINS[op] if op in BUILTINS else OPERATORS[op]
     type_ = row.result(tuple(x.type for x in operands))
     if type_ is None:  # a scalar beside a vector
-        vector = next((x.type for x in operands if isinstance(x.type, Vector)), None)
-        if vector is not None:
-            operands = tuple(values.splat(x, vector) for x in operands)
-            type_ = row.result(tuple(x.type for x in operands))
+        wider: Type = next((x.type for x in operands if isinstance(x.type, Vector)), F32)
+        operands = tuple(values.splat(x, wider) for x in operands)
+        type_ = row.result(tuple(x.type for x in operands))
     if type_ is None:
         raise ValueError(f"{op} has no such operands")
     if op in BUILTINS:
