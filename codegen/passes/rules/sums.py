@@ -17,7 +17,7 @@ import numpy as np
 
 from codegen.intervals.numbers import LARGEST, SMALLEST
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, Scalar, Vector
+from codegen.ir.types import F32, Type, Vector
 from codegen.passes.analysis.operations import number_of_operations
 from codegen.passes.ssa.values import Rewrite, Rule, Values, constant_components
 
@@ -109,7 +109,10 @@ class _Expansion:
         return self.atom(e)
 
     def atom(self, e: ir.Expr) -> _Sum:
-        number = self._numbers.setdefault(id(e), len(self._numbers))
+        """One value by its number, which is below 0 for a constant with components of their own."""
+        count = len(self._numbers)
+        is_constant = constant_components(e) is not None
+        number = self._numbers.setdefault(id(e), -1 - count if is_constant else count)
         self.atoms[number] = e
         return _Sum({(number,): 1})
 
@@ -124,7 +127,8 @@ def _added(a: _Sum | None, b: _Sum | None, op: str) -> _Sum | None:
     total, cancels = dict(a.terms), a.cancels or b.cancels
     for monomial, factor in b.terms.items():
         added = total.get(monomial, 0) + (factor if op == "+" else -factor)
-        cancels = cancels or (added == 0 and factor != 0 and bool(monomial))
+        varies = any(number >= 0 for number in monomial)
+        cancels = cancels or (added == 0 and factor != 0 and varies)
         total[monomial] = added
     return _Sum(total, cancels) if len(total) <= MOST_TERMS else None
 
@@ -167,20 +171,17 @@ def _rebuilt(
 
 
 def _term(values: Values, monomial: Monomial, factor: Factor, atoms: Mapping[int, ir.Expr]) -> ir.Expr | None:
-    number = float(factor)
-    if Fraction(float(np.float32(number))) != factor or not SMALLEST <= number <= LARGEST:
+    if not SMALLEST <= factor <= LARGEST or Fraction(float(np.float32(factor))) != factor:
         return None
-    made = None if factor == 1 and monomial else values.number(number, F32)
+    made = None if factor == 1 and monomial else values.number(float(factor), F32)
     # Scalars first, so that a vector is scaled once.
     for e in sorted((atoms[k] for k in monomial), key=lambda x: isinstance(x.type, Vector)):
         made = e if made is None else values.binary("*", made, e)
     return made
 
 
-def _element(type_: object) -> Scalar | None:
-    if isinstance(type_, Vector):
-        return type_.element
-    return type_ if isinstance(type_, Scalar) else None
+def _element(type_: Type) -> Type:
+    return type_.element if isinstance(type_, Vector) else type_
 
 
 def _cost(e: ir.Expr) -> int:
