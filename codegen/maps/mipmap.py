@@ -43,12 +43,15 @@ def reduced(pixels: npt.NDArray[np.floating], rows: int) -> Array:
 def _halved(values: Array, weight: Array) -> tuple[Array, Array]:
     rows, columns = (_cover(n, max(n // 2, 1)) for n in values.shape[:2])
     smaller = np.einsum("ij,jk,lk->il", rows, weight, columns, optimize=True)
+    seen = smaller > 0.0
     total = np.einsum("ij,jkc,lk->ilc", rows, values * weight[..., None], columns, optimize=True)
+    weighted = np.asarray(total / np.where(seen, smaller, 1.0)[..., None])
+    if seen.all():
+        return weighted, smaller
+    # A texel none of whose parts has weight (outside a map's disc) keeps the plain mean.
     plain = np.einsum("ij,jkc,lk->ilc", rows, values, columns, optimize=True)
     plain /= (rows.sum(axis=1)[:, None] * columns.sum(axis=1)[None, :])[..., None]
-    # A texel none of whose parts has weight (outside a map's disc) keeps the plain mean.
-    weighted = total / np.where(smaller > 0.0, smaller, 1.0)[..., None]
-    return np.where((smaller > 0.0)[..., None], weighted, plain), smaller
+    return np.where(seen[..., None], weighted, plain), smaller
 
 
 def _cover(old: int, new: int) -> Array:

@@ -149,7 +149,8 @@ def measured_error(
 ) -> MapError:
     """The lights against the sum over all texels.
 
-    shade   (directions (N, 3), colours (N, 3), points (N,)) -> radiance (N, 3) of each light at its point
+    shade   (directions (N, 3), colours (N, 3), points (N,) or (1,) for all lights) -> radiance (N, 3) of
+            each light at its point
     points  number of points
     """
     everything = texels(mipmap.reduced(rgb, COARSE))
@@ -160,8 +161,7 @@ def measured_error(
     shown = shade(np.tile(few.directions, (points, 1)), np.tile(few.colours, (points, 1)), places)
     wrong, right = [], []
     for k, of_lights in enumerate(np.split(shown, points)):
-        place = np.full(len(everything.directions), k)
-        truth = shade(everything.directions, everything.colours, place).sum(axis=0)
+        truth = shade(everything.directions, everything.colours, np.array([k])).sum(axis=0)
         wrong.append(of_lights.sum(axis=0) - truth)
         right.append(truth)
     difference, mean = np.array(wrong), float(np.mean(right))
