@@ -239,13 +239,15 @@ class _Drawing:
         else:
             values = low + share * (high - low)
         first_end, last_end = np.float32(low), np.float32(high)
-        found = np.clip(values.astype(np.float32), first_end, last_end)
+        found = values.astype(np.float32)
+        np.minimum(np.maximum(found, first_end, out=found), last_end, out=found)
         ends = self.random.random(shape) < END_SHARE * self.hard.reshape(-1, *[1] * (len(shape) - 1)) * 2
-        first = self.random.random(shape) < 0.5
-        itself = self.random.random(shape) < 0.5
-        beside = np.nextafter(first_end, last_end), np.nextafter(last_end, first_end)
-        end = np.where(first, np.where(itself, first_end, beside[0]), np.where(itself, last_end, beside[1]))
-        np.copyto(found, end, where=ends)
+        last = self.random.random(shape) >= 0.5
+        beside = self.random.random(shape) >= 0.5
+        inner = np.nextafter(first_end, last_end), np.nextafter(last_end, first_end)
+        choices = np.array([first_end, inner[0], last_end, inner[1]])
+        chosen = np.nonzero(ends)
+        found[chosen] = choices[(2 * last[chosen] + beside[chosen], *chosen[1:])]
         return found.astype(_dtype(slot), copy=False)
 
 
