@@ -187,7 +187,26 @@ CONDITIONS: dict[str, Callable[..., bool]] = {
 }
 
 
-Outlines = tuple[tuple[str, ...], ...]
+@dataclass(frozen=True)
+class _Ready:
+    """A row as it is applied: its patterns, and its conditions with the names that they speak of."""
+
+    row: Row
+    pattern: patterns.Operation
+    replacement: patterns.Pattern
+    conditions: tuple[tuple[Callable[..., bool], tuple[str, ...]], ...]
+
+
+@functools.cache
+def _rows() -> tuple[_Ready, ...]:
+    """All rows, in order."""
+    found = []
+    for row in ROWS:
+        pattern = patterns.parse(row.pattern)
+        assert isinstance(pattern, patterns.Operation)
+        tests = tuple((CONDITIONS[test], tuple(names)) for test, *names in map(str.split, row.when))
+        found.append(_Ready(row, pattern, patterns.parse(row.replacement), tests))
+    return tuple(found)
 
 
 def identities(ranges: Ranges, kinds: frozenset[str]) -> Rule:
@@ -197,10 +216,11 @@ def identities(ranges: Ranges, kinds: frozenset[str]) -> Rule:
         operation = patterns.operation(e)
         if operation is None:
             return None
-        for row in _candidates(kinds, operation, patterns.outlines(e)):
-            for found in patterns.match(patterns.parse(row.pattern), e):
-                if all(_holds(values, ranges, condition, found) for condition in row.when):
-                    value = patterns.make(patterns.parse(row.replacement), found, values, e.type)
+        for ready in _candidates(kinds, operation, patterns.outlines(e)):
+            for found in patterns.match(ready.pattern, e):
+                if all(test(values, ranges, *[found[n] for n in names]) for test, names in ready.conditions):
+                    value = patterns.make(ready.replacement, found, values, e.type)
+                    row = ready.row
                     return Rewrite(value, NAME, f"{row.pattern} = {row.replacement}, {row.kind}: {row.note}")
         return None
 
@@ -208,17 +228,14 @@ def identities(ranges: Ranges, kinds: frozenset[str]) -> Rule:
 
 
 @functools.cache
-def _candidates(kinds: frozenset[str], operation: str, outlines: Outlines) -> list[Row]:
+def _candidates(
+    kinds: frozenset[str], operation: str, outlines: tuple[patterns.Outline, ...]
+) -> list[_Ready]:
     """The rows of these kinds that a value with these operands may fit."""
-    found = []
-    for row in ROWS:
-        outer = patterns.parse(row.pattern)
-        assert isinstance(outer, patterns.Operation)
-        if row.kind in kinds and outer.op == operation and patterns.may_match(outer, outlines):
-            found.append(row)
-    return found
-
-
-def _holds(values: Values, ranges: Ranges, condition: str, found: patterns.Found) -> bool:
-    test, *names = condition.split()
-    return CONDITIONS[test](values, ranges, *(found[name] for name in names))
+    return [
+        ready
+        for ready in _rows()
+        if ready.row.kind in kinds
+        and ready.pattern.op == operation
+        and patterns.may_match(ready.pattern, outlines)
+    ]

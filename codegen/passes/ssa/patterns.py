@@ -95,19 +95,49 @@ def operation(e: ir.Expr) -> str | None:
     return "select" if isinstance(e, ir.Select) else None
 
 
-def outlines(e: ir.Expr) -> tuple[tuple[str, ...], ...]:
-    """What the operands of a value are, an operation, "number" or "", in each order that is tried."""
-    given = tuple(
-        "number" if constant_components(x) is not None else operation(x) or "" for x in ir.children(e)
-    )
-    return (given, given[::-1]) if operation(e) in COMMUTATIVE else (given,)
+Outline = tuple[tuple[str, ...], tuple[int, ...]]
+"""What the operands of a value are, and of each the first operand that is the same value."""
+
+_WRITTEN = {0.0: "0", 1.0: "1", -1.0: "-1"}
+"""The numbers that identities name: few, so that values have few outlines."""
 
 
-def may_match(pattern: Operation, of: tuple[tuple[str, ...], ...]) -> bool:
+def outlines(e: ir.Expr) -> tuple[Outline, ...]:
+    """What the operands of a value are, an operation, a number or "", in each order that is tried."""
+    parts = ir.children(e)
+    words = tuple([_word(x) for x in parts])
+    if len(parts) == 2:
+        alike: tuple[int, ...] = (0, 0) if parts[0] is parts[1] else (0, 1)
+    else:
+        numbers = [id(x) for x in parts]
+        alike = tuple([numbers.index(number) for number in numbers])
+    given = words, alike
+    return (given, (words[::-1], alike)) if operation(e) in COMMUTATIVE else (given,)
+
+
+def _word(e: ir.Expr) -> str:
+    numbers = constant_components(e)
+    if numbers is None:
+        return operation(e) or ""
+    return _number_word(numbers[0]) if all(x == numbers[0] for x in numbers) else "number"
+
+
+def _number_word(x: float | int | bool) -> str:
+    return str(x) if isinstance(x, bool) else _WRITTEN.get(x, "number")
+
+
+def may_match(pattern: Operation, of: tuple[Outline, ...]) -> bool:
     """Whether a value with these outlines may fit a pattern: a quick look before `match`."""
-    kinds = {Name: "", Number: "number"}
-    wanted = [p.op if isinstance(p, Operation) else kinds[type(p)] for p in pattern.operands]
-    return any(all(p in ("", x) for p, x in zip(wanted, given, strict=False)) for given in of)
+    wanted = [
+        p.op if isinstance(p, Operation) else _number_word(p.value) if isinstance(p, Number) else ""
+        for p in pattern.operands
+    ]
+    firsts = [pattern.operands.index(p) if isinstance(p, Name) else k for k, p in enumerate(pattern.operands)]
+    return any(
+        all(p in ("", x) for p, x in zip(wanted, words, strict=False))
+        and all(alike[k] == alike[first] for k, first in enumerate(firsts))
+        for words, alike in of
+    )
 
 
 def match(pattern: Pattern, e: ir.Expr, found: Found | None = None) -> Iterator[dict[str, ir.Expr]]:
