@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32, I32, Array, Type, Vector
@@ -91,8 +92,11 @@ class Values:
             return self._simple[id(given)]
         value = given
         for _ in range(MOST_CHANGES):
-            found = next(filter(None, (rule(self, value) for rule in self.rules)), None)
-            if found is None:
+            for rule in self.rules:
+                found = rule(self, value)
+                if found is not None:
+                    break
+            else:
                 break
             changed = self.intern(found.value)
             self.note(found.name, f"{self.show(value)} -> {self.show(changed)}", found.why)
@@ -176,24 +180,34 @@ class Values:
 
 
 def _key(e: ir.Expr) -> tuple[object, ...]:
-    parts = tuple(map(id, ir.children(e)))
-    match e:
-        case ir.Const():
-            return ("const", e.type.name, type(e.value), repr(e.value))
-        case ir.Var():
-            return ("var", e.name)
-        case ir.Unary() | ir.Binary() | ir.Builtin():
-            if e.op in COMMUTATIVE:
-                parts = tuple(sorted(parts))
-            return (type(e), e.type.name, e.op, *parts)
-        case ir.Call():
-            return ("call", e.function, *parts)
-        case ir.Member():
-            return ("member", e.name, *parts)
-        case ir.Swizzle():
-            return ("swizzle", e.components, *parts)
-        case _:
-            return (type(e), e.type.name, *parts)
+    return _KEYS[type(e)](e)
+
+
+def _operation_key(e: ir.Unary | ir.Binary | ir.Builtin) -> tuple[object, ...]:
+    parts = [id(x) for x in ir.children(e)]
+    if e.op in COMMUTATIVE:
+        parts.sort()
+    return (type(e), e.type.name, e.op, *parts)
+
+
+def _other_key(e: ir.Expr) -> tuple[object, ...]:
+    return (type(e), e.type.name, *map(id, ir.children(e)))
+
+
+_KEYS: dict[type, Callable[[Any], tuple[object, ...]]] = {
+    ir.Const: lambda e: ("const", e.type.name, type(e.value), repr(e.value)),
+    ir.Var: lambda e: ("var", e.name),
+    ir.Unary: _operation_key,
+    ir.Binary: _operation_key,
+    ir.Builtin: _operation_key,
+    ir.Call: lambda e: ("call", e.function, *map(id, e.args)),
+    ir.Construct: _other_key,
+    ir.Convert: _other_key,
+    ir.Member: lambda e: ("member", e.name, id(e.value)),
+    ir.Swizzle: lambda e: ("swizzle", e.components, id(e.value)),
+    ir.Index: _other_key,
+    ir.Select: _other_key,
+}
 
 
 def any_element(values: Values, array: ir.Expr) -> ir.Expr:
