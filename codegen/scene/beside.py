@@ -11,11 +11,14 @@ import multiprocessing
 import os
 import signal
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from multiprocessing.connection import Connection
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Result = TypeVar("Result")
+First = TypeVar("First")
+Second = TypeVar("Second")
 
 
 def beside(make: Callable[[], Result], *, forked: bool) -> Callable[[], Result]:
@@ -24,32 +27,49 @@ def beside(make: Callable[[], Result], *, forked: bool) -> Callable[[], Result]:
     make    the work; done by whoever waits where nothing can be forked or the process ends without a result
     forked  whether a process may be forked
     """
+    (result,) = _in_turn([make], forked)
+    return result
+
+
+def both_beside(
+    first: Callable[[], First], second: Callable[[], Second], *, forked: bool
+) -> tuple[Callable[[], First], Callable[[], Second]]:
+    """The same for two works that one process does in turn; the second goes on while the first is used."""
+    one, other = _in_turn([first, second], forked)
+    return one, other
+
+
+def _in_turn(works: Sequence[Callable[[], Any]], forked: bool) -> Sequence[Callable[[], Any]]:
     if not forked or "fork" not in multiprocessing.get_all_start_methods() or os.cpu_count() == 1:
-        return make
+        return works
     context = multiprocessing.get_context("fork")
     receiving, sending = context.Pipe(duplex=False)
-    process = context.Process(target=_worked, args=(make, sending), daemon=True)
+    process = context.Process(target=_worked, args=(works, sending), daemon=True)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of threads: those of BLAS survive a fork
         process.start()
     sending.close()
+    received: list[Any] = []
 
-    def result() -> Result:
+    def result(number: int) -> Any:
         try:
-            found: Result = receiving.recv()
+            while len(received) <= number:
+                received.append(receiving.recv())
         except (EOFError, OSError):
-            found = make()  # an error is raised here as it is
-        process.join()
-        return found
+            return works[number]()  # an error is raised here as it is
+        if len(received) == len(works):
+            process.join()
+        return received[number]
 
-    return result
+    return [partial(result, number) for number in range(len(works))]
 
 
-def _worked(make: Callable[[], object], sending: Connection) -> None:
-    """The process: it sends the result, or ends without one, and does nothing else on its way out."""
+def _worked(works: Sequence[Callable[[], object]], sending: Connection) -> None:
+    """The process: it sends the results, or ends without one, and does nothing else on its way out."""
     try:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # who waits ends this process
         gc.freeze()
-        sending.send(make())
+        for make in works:
+            sending.send(make())
     finally:
         os._exit(0)

@@ -23,12 +23,12 @@ from codegen.passes.analysis.operations import operations
 from codegen.passes.probe import operations_left
 from codegen.passes.specialise import Specialised
 from codegen.scene import environment
-from codegen.scene.beside import beside
+from codegen.scene.beside import beside, both_beside
 from codegen.scene.description.document import Scene
 from codegen.scene.description.lights import UNROLLED
 from codegen.scene.environment import ConstantLight, MapError
 from codegen.scene.general import General, general_function
-from codegen.scene.proof.errors import Floats, as_floats, reference_values
+from codegen.scene.proof.errors import Floats, as_floats, exact_values, reference_values
 from codegen.scene.proof.points import SEED, Points, draw
 from codegen.scene.proof.proof import Proof, Results, prove
 from codegen.scene.reduction.knowledge import Given, Knowledge
@@ -133,8 +133,12 @@ class Builder:
         library = self.library.with_functions([general.function])
         self.say("searching")
         points = draw(self.scene, general, SEARCH_POINTS)
-        reducer = Reducer.of(library, self.scene, general, points, forked=not self.executed)
-        ahead = beside(lambda: self.ahead(library, general, list(constant), pixels), forked=not self.executed)
+        wide, ahead = both_beside(
+            partial(exact_values, library, general.function.name, points),
+            partial(self.ahead, library, general, constant, pixels),
+            forked=not self.executed,
+        )
+        reducer = Reducer.of(library, self.scene, general, points, None if self.executed else wide)
         self.check_budget(reducer.reference.rounding)
         if not reducer.exact().function.parameters:
             raise UserError(
@@ -204,7 +208,7 @@ class Builder:
         points = draw(self.scene, general, PROOF_POINTS if self.executed else UNEXECUTED_POINTS, SEED + 1)
         single = None
         if self.executed:
-            exact = as_floats(evaluate(library, general.function.name, points.inputs, "float64"))
+            exact = exact_values(library, general.function.name, points)
         else:
             exact, single = reference_values(library, general.function.name, points)
         error = None if pixels is None else self.map_error(library, lights, pixels)

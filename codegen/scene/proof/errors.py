@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -66,10 +67,12 @@ def _largest(a: Floats) -> Floats:
 
 def reference_values(library: Library, name: str, points: Points) -> tuple[Floats, Floats]:
     """A function of the library over points: in float64, and as float32 rounds it."""
-    exact, single = (
-        evaluate(library, name, points.inputs, arithmetic) for arithmetic in ("float64", "float32")
-    )
-    return as_floats(exact), as_floats(single)
+    return exact_values(library, name, points), as_floats(evaluate(library, name, points.inputs, "float32"))
+
+
+def exact_values(library: Library, name: str, points: Points) -> Floats:
+    """A function of the library over points in float64."""
+    return as_floats(evaluate(library, name, points.inputs, "float64"))
 
 
 SCREEN = 2_500
@@ -90,9 +93,17 @@ class Reference:
     memory: Memory | None = field(default=None, repr=False, compare=False)
 
     @staticmethod
-    def of(library: Library, name: str, points: Points) -> Reference:
-        """The reference of a function of the library."""
-        return Reference(points, *reference_values(library, name, points), Memory())
+    def of(
+        library: Library, name: str, points: Points, exact: Callable[[], Floats] | None = None
+    ) -> Reference:
+        """The reference of a function of the library, remembering what functions like it share with it.
+
+        exact  gives its values in float64 where they are computed elsewhere
+        """
+        memory = Memory()
+        single = as_floats(evaluate(library, name, points.inputs, "float32", memory=memory))
+        wide = exact_values(library, name, points) if exact is None else exact()
+        return Reference(points, wide, single, memory)
 
     @property
     def rounding(self) -> float:

@@ -7,12 +7,10 @@ variants at call sites, looser forms of the geometry, numbers for terms that har
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import NamedTuple
 
-from codegen.evaluate.memory import Memory
 from codegen.ir import nodes as ir
 from codegen.library import Library
 from codegen.passes.analysis.operations import operations
@@ -20,11 +18,10 @@ from codegen.passes.rules.powers import LARGEST
 from codegen.passes.rules.sine_powers import EXPONENTS
 from codegen.passes.specialise import Specialised, specialise
 from codegen.passes.ssa.text import show
-from codegen.scene.beside import beside
 from codegen.scene.description.document import Scene
 from codegen.scene.description.lights import UNROLLED
 from codegen.scene.general import General
-from codegen.scene.proof.errors import Measured, Reference, reference_values
+from codegen.scene.proof.errors import Floats, Measured, Reference
 from codegen.scene.proof.points import Points
 from codegen.scene.reduction.drops import Term, errors_without, parts_of, terms, without
 from codegen.scene.reduction.knowledge import Knowledge, knowledge, model_ranges
@@ -111,18 +108,23 @@ class Reducer:
 
     @staticmethod
     def of(
-        library: Library, scene: Scene, general: General, points: Points, *, forked: bool = False
+        library: Library,
+        scene: Scene,
+        general: General,
+        points: Points,
+        exact: Callable[[], Floats] | None = None,
     ) -> Reducer:
         """The reducer of a scene over points of it; `library` holds the general function.
 
-        forked  whether the reference may be evaluated in another process, while the exact passes run here
+        exact  waits for the function's values in float64, which another process computes meanwhile; None
+               where they are computed here
         """
-        values = beside(partial(reference_values, library, general.function.name, points), forked=forked)
+        name = general.function.name
         known = knowledge(scene, general)
         made: dict[tuple[object, ...], Specialised] = {}
-        if forked:
-            made[(), 0] = known.specialised(library, general.function.name, scene.function)
-        reference = Reference(points, *values(), Memory())
+        if exact is not None:
+            made[(), 0] = known.specialised(library, name, scene.function)
+        reference = Reference.of(library, name, points, exact)
         search = Search(library, general, reference, model_ranges(scene, general))
         return Reducer(library, general, known, reference, search, scene.function, made)
 
