@@ -18,9 +18,11 @@ from codegen.library import Library
 from codegen.passes.analysis.operations import operations_by_cost
 from codegen.version import VERSION
 from conformance.bench.accuracy import Error
+from conformance.bench.joining import GroupTiming, Timing
 from conformance.bench.kernels import THROUGHPUT
 from conformance.bench.ratios import Spread
-from conformance.bench.timing import Bench, GroupTiming, Timing
+from conformance.bench.steady import Rounds
+from conformance.bench.timing import Bench
 from conformance.peers import PEERS
 from targets import Device
 
@@ -72,6 +74,7 @@ def method_data(bench: Bench) -> dict[str, Any]:
         "clock": bench.clock_name,
         "driver_threads": 1 if bench.software else None,
         "order": "every kernel forwards and backwards in each round (A B B A), the first one changing",
+        "visits": "each in a process of its own, until orders are reproducible",
         "rounds": [bench.effort.rounds, max(bench.effort.most, bench.effort.rounds)],
         "lanes": bench.lanes,
         "throughput_chains": THROUGHPUT.chains,
@@ -98,6 +101,7 @@ def timing_data(t: Timing) -> dict[str, Any]:
         "gross_ns": t.gross_ns,
         "ratio": t.ratio.median if t.ratio is not None else None,
         "ratio_quartiles": quartiles(t.ratio) if t.ratio is not None else None,
+        "ratio_by_visit": list(t.by_visit),
     }
 
 
@@ -122,19 +126,31 @@ def error_data(e: Error, domain: str) -> dict[str, Any]:
     }
 
 
-def group_data(base: str, timings: Mapping[str, GroupTiming]) -> dict[str, Any]:
-    """What the rounds of a group's modes were, and which pairs they leave open."""
+def group_data(t: GroupTiming, steps: int, lanes: int) -> dict[str, Any]:
+    """What the visits to a group in one mode were, and which pairs they leave open.
+
+    steps, lanes  of each launch
+    """
+    raw: dict[str, list[float]] = {}
+    for rounds in t.visits:
+        for name, times in rounds.items():
+            raw.setdefault(name, []).extend(times)
     return {
-        "base": base,
-        "modes": {
-            mode: {
-                "rounds": len(next(iter(t.rounds_ns.values()))),
-                "undecided": [list(pair) for pair in t.undecided],
-                "raw_ns": t.rounds_ns,
-            }
-            for mode, t in timings.items()
-        },
+        "rounds": sum(_count(rounds) for rounds in t.visits),
+        "undecided": [list(pair) for pair in t.undecided],
+        "visits": [{"rounds": _count(rounds), "members": len(rounds) - 1} for rounds in t.visits],
+        "steps": steps,
+        "lanes": lanes,
+        "raw_ns": raw,
+        "raw_visits": [list(rounds) for rounds in t.visits],
     }
+
+
+def _count(rounds: Rounds) -> int:
+    return len(next(iter(rounds.values())))
+
+
+RAW = ("raw_ns", "raw_visits")
 
 
 def without_raw(result: dict[str, Any]) -> dict[str, Any]:
@@ -143,7 +159,7 @@ def without_raw(result: dict[str, Any]) -> dict[str, Any]:
         {
             **g,
             "modes": {
-                mode: {key: value for key, value in data.items() if key != "raw_ns"}
+                mode: {key: value for key, value in data.items() if key not in RAW}
                 for mode, data in g["modes"].items()
             },
         }

@@ -1,4 +1,4 @@
-"""Measuring drivers: one worker process each, whose environment makes its driver use one thread."""
+"""Measuring drivers: a worker process per visit, whose environment makes its driver use one thread."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ from typing import Any
 from codegen.errors import UserError
 from codegen.library import default_root
 from conformance.bench.record import complete
-from conformance.bench.timing import QUICK, Effort
+from conformance.bench.timing import QUICK, VISIT, Effort
 from conformance.bench.vectorised import CACHE, REMARKS
+from conformance.bench.visiting import all_visits
+from conformance.bench.visits import MOST_VISITS
 from conformance.bench.worker import Job
 from targets import TargetUnavailable
 from targets.drivers import driver, environment_of
@@ -50,22 +52,31 @@ class Options:
     seconds    how long all of it should take, on a machine that does nothing else
     leave_out  whether what the time does not suffice for is left out
     at_once    workers side by side
+    visits     most visits to a driver, each in a process of its own
     """
 
     functions: tuple[str, ...] = ()
-    effort: Effort = Effort()  # noqa: RUF009 - frozen
+    effort: Effort = VISIT
     uniform: int = 20_000
     family: int = 2_000
     figures: int = 20_000
-    seconds: float = 1000.0
+    seconds: float = 800.0
     leave_out: bool = False
     at_once: int = 2
+    visits: int = MOST_VISITS
 
     @staticmethod
     def quick(functions: tuple[str, ...] = ()) -> Options:
-        """Fewer rounds, fewer inputs, no promised figures."""
+        """Fewer rounds in a single visit, fewer inputs, no promised figures."""
         return Options(
-            functions, QUICK, uniform=2_000, family=200, figures=0, seconds=95.0, leave_out=not functions
+            functions,
+            QUICK,
+            uniform=2_000,
+            family=200,
+            figures=0,
+            seconds=95.0,
+            leave_out=not functions,
+            visits=1,
         )
 
 
@@ -146,7 +157,7 @@ def environment(place: Place, scratch: str) -> dict[str, str]:
 
 
 def _work(place: Place, options: Options, watch: Watch) -> dict[str, Any] | str:
-    """One worker's result, or the reason why the driver is not available."""
+    """What all visits to a driver found, or the reason why it is not available."""
     o = options
     job = Job(
         place.target,
@@ -159,7 +170,21 @@ def _work(place: Place, options: Options, watch: Watch) -> dict[str, Any] | str:
         o.seconds,
         o.leave_out,
     )
-    return in_worker("conformance.bench.worker", place, job.to_json(), watch)
+    before = list(os.getloadavg())
+    with compiled() as scratch:
+
+        def visit(one: Job) -> dict[str, Any] | str:
+            return _data("conformance.bench.worker", place, one.to_json(), watch, scratch)
+
+        found = all_visits(job, o.visits, visit)
+    if isinstance(found, str):
+        return found
+    return complete(found, {"before": before, "after": list(os.getloadavg())})
+
+
+def compiled() -> tempfile.TemporaryDirectory[str]:
+    """An empty folder for what a driver compiles: nothing is read that an earlier measurement left."""
+    return tempfile.TemporaryDirectory(prefix="vair-")
 
 
 def in_worker(module: str, place: Place, job: str, watch: Watch) -> dict[str, Any] | str:
@@ -168,18 +193,20 @@ def in_worker(module: str, place: Place, job: str, watch: Watch) -> dict[str, An
     module  what the process runs: it reads the job on standard input and says events, see worker.Channel
     errors  UserError where it fails
     """
-    with tempfile.TemporaryDirectory(prefix="vair-") as scratch:
-        try:
-            variables = environment(place, scratch)
-        except TargetUnavailable as reason:
-            return str(reason)
-        return _answer(module, place, job, watch, variables)
-
-
-def _answer(
-    module: str, place: Place, job: str, watch: Watch, variables: dict[str, str]
-) -> dict[str, Any] | str:
     before = list(os.getloadavg())
+    with compiled() as scratch:
+        data = _data(module, place, job, watch, scratch)
+    if isinstance(data, str):
+        return data
+    return complete(data, {"before": before, "after": list(os.getloadavg())})
+
+
+def _data(module: str, place: Place, job: str, watch: Watch, scratch: str) -> dict[str, Any] | str:
+    """What a worker answers, not yet completed."""
+    try:
+        variables = environment(place, scratch)
+    except TargetUnavailable as reason:
+        return str(reason)
     process = subprocess.Popen(
         [sys.executable, "-m", module],
         cwd=default_root().parent,
@@ -197,7 +224,7 @@ def _answer(
         for line in process.stdout:
             event = _event(line)
             if event.get("event") == "result":
-                answer = complete(event["data"], {"before": before, "after": list(os.getloadavg())})
+                answer = event["data"]
             elif event.get("event") == "unavailable":
                 answer = str(event["reason"])
             elif event:

@@ -23,9 +23,9 @@ from conformance.bench import kernels
 from conformance.bench.clocks import SECONDS, Clock, driver_clock
 from conformance.bench.inputs import Group, lanes
 from conformance.bench.kernels import FLAT, THROUGHPUT, Mode
-from conformance.bench.ratios import Spread, net, net_ratio, spread
-from conformance.bench.stopping import settled, undecided
+from conformance.bench.stopping import settled
 from conformance.bench.vectorised import Vectorised, by_construction, from_remarks, remarks, tells
+from conformance.bench.visits import BASELINE
 from targets import Device, TimedRuntime
 from targets.protocol import Prepared
 
@@ -46,9 +46,6 @@ HARDWARE_LANES = 1 << 16
 FLAT_LANES = 1 << 14
 MOST_STEPS = 1 << 15
 """llvmpipe gives up on a loop after 65535 steps."""
-
-BASELINE = ""
-"""Key of the baseline kernel among the members of a group."""
 
 
 def is_software(device: Device) -> bool:
@@ -75,30 +72,38 @@ class Effort:
     flat: bool = True
 
 
+VISIT = Effort(rounds=12, most=24)
+"""One of several visits."""
 QUICK = Effort(rounds=8, most=12, seconds=1e-3, launches=6.0, flat=False)
 
 
 @dataclass(frozen=True)
-class Timing:
-    """One member of a group in one mode: nanoseconds per evaluation, and its net time over the base's."""
+class GroupRounds:
+    """One visit to a group in one mode.
 
-    net_ns: Spread
-    gross_ns: float
-    ratio: Spread | None
+    rounds_ns     per kernel (the baseline's name is empty) the nanoseconds per evaluation of every round
+    steps, lanes  of each launch
+    """
+
+    rounds_ns: dict[str, list[float]]
+    steps: int
+    lanes: int
 
 
 @dataclass(frozen=True)
-class GroupTiming:
-    """A group in one mode.
+class Again:
+    """What a later visit times of a group in one mode.
 
-    members    timings by name
-    undecided  pairs of members whose order the rounds leave open
-    rounds_ns  per kernel (the baseline's name is empty) the nanoseconds per evaluation of every round
+    members       names, the base among them
+    steps, lanes  as in the first visit
+    turn          number of the visit: every other one prepares the kernels in opposite order, so that others
+                  lie beside each other in memory
     """
 
-    members: dict[str, Timing]
-    undecided: list[tuple[str, str]]
-    rounds_ns: dict[str, list[float]]
+    members: tuple[str, ...]
+    steps: int
+    lanes: int
+    turn: int
 
 
 class Bench:
@@ -142,29 +147,35 @@ class Bench:
         one.release()
         return float(np.median(times))
 
-    def group(self, group: Group, mode: Mode, until: float = math.inf) -> GroupTiming:
-        """The members of a group in one mode.
+    def group(
+        self,
+        group: Group,
+        mode: Mode,
+        until: float = math.inf,
+        again: Again | None = None,
+    ) -> GroupRounds:
+        """One visit to a group in one mode.
 
         until  time of time.monotonic() after which only the least number of rounds is run
+        again  what a later visit times; None: all members, for as many steps and lanes as it takes
         """
         target = self.runtime.device.target
-        texts = {f.name: kernels.kernel(self.library, f.name, target, mode) for f in group.members}
+        names = [f.name for f in group.members if again is None or f.name in again.members]
+        texts = {name: kernels.kernel(self.library, name, target, mode) for name in names}
         texts[BASELINE] = kernels.baseline(self.library, group.base.name, target, mode)
         words = self.words(group, mode)
-        if mode == FLAT:
-            words = self.enough_lanes(texts[group.base.name], words)
-        steps = self.steps(texts[group.base.name], words, mode)
+        if again is not None:
+            words, steps = words[:, : again.lanes], again.steps
+            texts = dict(reversed(texts.items())) if again.turn % 2 else texts
+        else:
+            if mode == FLAT:
+                words = self.enough_lanes(texts[group.base.name], words)
+            steps = self.steps(texts[group.base.name], words, mode)
         with self.prepared(texts, words, steps) as ready:
             rounds = self.rounds(ready, lambda so_far: settled(so_far, BASELINE), until)
         scale = 1e9 / (2 * words.shape[1] * mode.evaluations * steps)
-        floor, reference = rounds[BASELINE], rounds[group.base.name]
-        found = {}
-        for f in group.members:
-            above = spread([t * scale for t in net(rounds[f.name], floor)])
-            ratio = net_ratio(rounds[f.name], reference, floor)
-            found[f.name] = Timing(above, float(np.median(rounds[f.name])) * scale, ratio)
-        per_evaluation = {name: [t * scale for t in times] for name, times in rounds.items()}
-        return GroupTiming(found, undecided(rounds, BASELINE), per_evaluation)
+        order = [*names, BASELINE]
+        return GroupRounds({name: [t * scale for t in rounds[name]] for name in order}, steps, words.shape[1])
 
     def vectorised(self, group: Group) -> dict[str, Vectorised]:
         """Per member, on how many work items its kernel computes at once; without a loop where it matters."""

@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from codegen.execute import execute
@@ -28,12 +28,10 @@ from conformance.bench.record import (
     described_device,
     error_data,
     function_data,
-    group_data,
     method_data,
-    timing_data,
 )
 from conformance.bench.selfcheck import self_checks
-from conformance.bench.timing import Bench, Effort
+from conformance.bench.timing import Again, Bench, Effort, GroupRounds
 from conformance.bench.vectorised import STANDARD_OUTPUT
 from conformance.bench.whole import whole
 from conformance.check.engine import Backend
@@ -57,6 +55,7 @@ class Job:
     seconds          how long it should take; 0: as long as it takes. Core functions come first
     leave_out        whether functions are left out that the time does not suffice for; else they get the
                      least number of rounds
+    again            of a later visit: base -> mode -> what it times of the group, and nothing else is done
     """
 
     target: str
@@ -68,6 +67,7 @@ class Job:
     figures: int
     seconds: float
     leave_out: bool = False
+    again: dict[str, dict[str, Again]] = field(default_factory=dict)
 
     def to_json(self) -> str:
         """The job as text."""
@@ -77,9 +77,12 @@ class Job:
     def from_json(text: str) -> Job:
         """The job that to_json wrote."""
         data = json.loads(text)
-        return Job(
-            **{**data, "functions": tuple(data["functions"]), "effort": Effort(**data["effort"])},
-        )
+        again = {
+            base: {m: Again(**{**a, "members": tuple(a["members"])}) for m, a in modes.items()}
+            for base, modes in data["again"].items()
+        }
+        effort = Effort(**data["effort"])
+        return Job(**{**data, "functions": tuple(data["functions"]), "effort": effort, "again": again})
 
 
 class Channel:
@@ -127,7 +130,36 @@ def backend_of(runtime: TimedRuntime) -> Backend:
 
 
 def measure(job: Job, say: Say) -> dict[str, Any]:
-    """The whole measurement of one driver, as data; says how far it is."""
+    """A first or a later visit to one driver, as data; says how far it is."""
+    return later_visit(job, say) if job.again else first_visit(job, say)
+
+
+def later_visit(job: Job, say: Say) -> dict[str, Any]:
+    """The rounds of what is timed again; groups that the time does not suffice for are missing."""
+    end = time.monotonic() + job.seconds if job.seconds else math.inf
+    library = peers.library()
+    bench = Bench(library, opened_driver(job.target, job.driver), job.effort)
+    by_name = {mode.name: mode for mode in kernels.modes(job.target)}
+    say("started", total=len(job.again), software=bench.software)
+    kept = []
+    for k, (base, wanted) in enumerate(job.again.items()):
+        if time.monotonic() > end:
+            break
+        until = time.monotonic() + (end - time.monotonic()) / (len(job.again) - k)
+        (group,) = groups(library, [base])
+        found = {name: bench.group(group, by_name[name], until, a) for name, a in wanted.items()}
+        kept.append(rounds_data(base, found))
+        say("done", what=f"{base} again")
+    return {"groups": kept}
+
+
+def rounds_data(base: str, found: dict[str, GroupRounds]) -> dict[str, Any]:
+    """The rounds of a group, by mode."""
+    return {"base": base, "modes": {mode: vars(rounds) for mode, rounds in found.items()}}
+
+
+def first_visit(job: Job, say: Say) -> dict[str, Any]:
+    """Everything that is measured of one driver; of the times, the rounds of each group."""
     end = time.monotonic() + job.seconds if job.seconds else math.inf
     library = peers.library()
     chosen = sorted(groups(library, job.functions), key=lambda g: g.base.name not in SPEED)
@@ -172,23 +204,23 @@ def measure(job: Job, say: Say) -> dict[str, Any]:
 def measured(
     library: Library, bench: Bench, group: Group, domain: str, found: dict[str, Error], until: float
 ) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    """The entries of a group, speed in every mode beside the error; and its rounds."""
+    """The entries of a group, without their speed; and its rounds in every mode."""
     vectorised = bench.vectorised(group)
     modes = [m for m in kernels.modes(bench.runtime.device.target) if m.looped or bench.effort.flat]
-    speeds = {}
+    rounds = {}
     for k, mode in enumerate(modes):
         share = time.monotonic() + (until - time.monotonic()) / (len(modes) - k)
-        speeds[mode.name] = bench.group(group, mode, share)
+        rounds[mode.name] = bench.group(group, mode, share)
     entries = [
         {
             **function_data(library, f, group.base.name),
-            "speed": {mode: timing_data(timing.members[f.name]) for mode, timing in speeds.items()},
+            "speed": {},  # follows from the rounds of all visits
             "vectorised": vars(vectorised[f.name]),
             "error": error_data(found[f.name], domain) if f.name in found else None,
         }
         for f in group.members
     ]
-    return entries, group_data(group.base.name, speeds)
+    return entries, rounds_data(group.base.name, rounds)
 
 
 if __name__ == "__main__":

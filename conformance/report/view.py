@@ -43,8 +43,14 @@ def view(library: Library, report: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "drivers": [{"label": label(r), **_device(r)} for r in results],
         "modes": [mode for mode in MODES if any(mode in f["speed"] for r in results for f in r["functions"])],
+        "visits": max((len(v) for r in results for v in _visits(r)), default=1),
         "groups": sorted(groups.values(), key=lambda g: _order(library, g["name"])),
     }
+
+
+def _visits(result: Mapping[str, Any]) -> list[Any]:
+    """The visits to each group in each mode, where a result tells of them."""
+    return [data["visits"] for g in result["groups"] for data in g["modes"].values() if "visits" in data]
 
 
 def _about(library: Library, base: str) -> dict[str, Any]:
@@ -102,6 +108,7 @@ def _speed(speed: Mapping[str, Any]) -> dict[str, Any]:
         "ratio": speed["ratio"],
         "low": low,
         "high": high,
+        "visits": speed.get("ratio_by_visit", []),  # results of single visits lack it
     }
 
 

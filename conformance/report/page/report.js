@@ -159,6 +159,8 @@ function list(card, group) {
     add("dt", e.name);
     add("dd", `${number(s.net)} ns, quartiles ${s.quartiles.map(number).join(" and ")}` +
       (s.ratio === null || e.kind === "base" ? "" : `; ${number(s.ratio)} times the default, quartiles ${number(s.low)} and ${number(s.high)}`));
+    if (s.visits.length > 1 && e.kind !== "base")
+      add("dd", `by visit, each in a process of its own: ${s.visits.map(number).join(", ")} times the default`);
     if (error) {
       const unit = state.unit === "ulp" ? "ULP" : "8-bit steps";
       add("dd", `at most ${number(error.max)} ${unit} on ${e.inputs.toLocaleString("en")} inputs (${e.domain})`);
@@ -176,7 +178,7 @@ function list(card, group) {
   }));
   const open = group.open[`${state.driver} ${state.mode}`] ?? [];
   if (open.length) {
-    const text = `Not decided which is faster: ${open.map((pair) => pair.join(" or ")).join("; ")}.`;
+    const text = `Not decided which is faster, or another in each visit: ${open.map((pair) => pair.join(" or ")).join("; ")}.`;
     holder.prepend(Object.assign(document.createElement("p"), { textContent: text }));
   }
 }

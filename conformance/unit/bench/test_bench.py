@@ -36,6 +36,7 @@ from conformance.bench.accuracy import ulps
 from conformance.bench.emission import emit
 from conformance.bench.figures import Figure
 from conformance.bench.inputs import declared, groups, lanes, within
+from conformance.bench.joining import timing
 from conformance.bench.kernels import FLAT, LATENCY, THROUGHPUT, Mode
 from conformance.bench.normal import normal_lanes
 from conformance.bench.ratios import net_ratio, spread, straightness
@@ -49,8 +50,9 @@ from conformance.bench.record import (
 )
 from conformance.bench.run import Options, places, schedule
 from conformance.bench.selfcheck import EXPECTED, self_checks
-from conformance.bench.timing import Bench, Effort
+from conformance.bench.timing import Again, Bench, Effort
 from conformance.bench.vectorised import by_construction, from_remarks
+from conformance.bench.visits import BASELINE
 from conformance.bench.whole import whole
 from conformance.bench.worker import Job
 from conformance.check.engine import backend
@@ -109,13 +111,17 @@ FLAT_ONE = Mode("flat", 1, looped=False)
 def test_tiny_measurement(library: Library, runtime: TimedRuntime) -> None:
     bench = Bench(library, runtime, TINY)
     (group,) = groups(library, ["strand_specular"])
-    timing_of_group = bench.group(group, THROUGHPUT)
-    found = timing_of_group.members
-    assert {len(rounds) for rounds in timing_of_group.rounds_ns.values()} == {TINY.rounds}
+    first = bench.group(group, THROUGHPUT)
+    some = tuple(f.name for f in group.members[:2])
+    second = bench.group(group, THROUGHPUT, again=Again(some, first.steps, first.lanes, 1))
+    assert (second.steps, second.lanes) == (first.steps, first.lanes)
+    assert list(second.rounds_ns) == [*some, BASELINE]
+    found = timing([first.rounds_ns, second.rounds_ns], group.base.name).members
+    assert {len(rounds) for rounds in first.rounds_ns.values()} == {TINY.rounds}
     assert set(found) == {f.name for f in group.members}
-    for timing in found.values():
-        assert timing.gross_ns > 0.0
-        assert np.isfinite([timing.net_ns.low, timing.net_ns.median, timing.net_ns.high]).all()
+    for member in found.values():
+        assert member.gross_ns > 0.0
+        assert np.isfinite([member.net_ns.low, member.net_ns.median, member.net_ns.high]).all()
     own = found[group.base.name].ratio
     assert own is None or (own.low, own.median, own.high) == (1.0, 1.0, 1.0)
 
@@ -245,8 +251,16 @@ def test_a_job_survives_the_way_to_its_worker() -> None:
 def test_timing_data_without_a_ratio(library: Library, runtime: TimedRuntime) -> None:
     bench = Bench(library, runtime, TINY)
     (group,) = groups(library, ["sin_angle"])
-    data = timing_data(bench.group(group, LATENCY).members[group.base.name])
-    assert set(data) == {"net_ns", "net_ns_quartiles", "gross_ns", "ratio", "ratio_quartiles"}
+    found = timing([bench.group(group, LATENCY).rounds_ns], group.base.name)
+    data = timing_data(found.members[group.base.name])
+    assert set(data) == {
+        "net_ns",
+        "net_ns_quartiles",
+        "gross_ns",
+        "ratio",
+        "ratio_quartiles",
+        "ratio_by_visit",
+    }
     assert method_data(bench)["rounds"] == [TINY.rounds, TINY.most]
 
 
