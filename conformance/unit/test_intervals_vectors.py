@@ -291,7 +291,7 @@ def test_nothing_is_cut_where_squares_may_vanish(sign: float) -> None:
     share = Range(*np.sort(sign * np.array([[0.5, 0.5, 0.5], [3.0, 3.0, 3.0]]), axis=0))
     found = geometry._at_most_one(share, np.array([True, False, False]))
     assert (sign * np.array([found.low, found.high])).max(axis=0).tolist() == [3.0, MOST, MOST]
-    codes = np.array([0, 0, 2], np.int16)
+    codes = np.array([0, 0, 1], np.int16)
     found = geometry._at_most_one(Range(share.low, share.high, codes), np.array([False, True, False]))
     assert (sign * np.array([found.low, found.high])).max(axis=0).tolist() == [MOST, 3.0, 3.0]
     assert found.cause is codes
@@ -308,6 +308,61 @@ def test_boxes_that_hold_the_zero_vector_are_anything(name: str) -> None:
         found = geometry.normalize(here, (x, y))
     for component in found:
         assert component.cause is not None and (component.cause > 0).tolist() == [True, True, False]
+    reasons = {"wgsl": "the divisor may be 0", "vulkan": "x may be 0 or less"}
+    (told,) = here.book.causes
+    assert told.reason == reasons.get(name, "x may be the zero vector")
     if name == "opencl":
-        (told,) = here.book.causes
-        assert (told.operand, told.reason) == ("x", "x may be the zero vector")
+        assert told.operand == "x"
+
+
+def test_what_may_be_anything_already_is_told_no_more() -> None:
+    codes = np.array([7, 0], np.int16)
+    x = Range(np.array([-np.inf, 1.0]), np.array([np.inf, 1.0]), codes)
+    zero = Range(np.zeros(2), np.zeros(2))
+    here = Context(load_table("opencl"), CauseBook(), 2)
+    with np.errstate(all="ignore"):
+        found = geometry.normalize(here, (x, zero))
+    assert here.book.causes == [] and found[0].cause is not None and found[0].cause.tolist() == [7, 0]
+
+
+def test_component_among_far_ones_may_be_all_there_is() -> None:
+    """Those may all be 0; what float64 loses of their squares makes it no larger than that."""
+    far, one = Range(np.full(2, -1e6), np.full(2, 1e6)), np.array([1.0, -1.0])
+    found = geometry.normalize(Context(load_table("opencl"), CauseBook(), 2), (Range(one, one), far, far))
+    assert found[0].cause is None
+    assert 1.0 <= found[0].high[0] <= 1.0 + 2.0**-20 and -1.0 >= found[0].low[1] >= -1.0 - 2.0**-20
+
+
+def test_exact_sums_hold_what_float64_loses() -> None:
+    """In whatever order large terms vanish, and on whichever side of 0 they are."""
+    large = 2.0**60
+    terms = [
+        (-large, 0.0),
+        (0.0, large),
+        (-large, -large),
+        (large, large),
+        (1.0, 1.0),
+        (-1.0, -1.0),
+        (-3.0, 5.0),
+    ]
+    for chosen in itertools.product(terms, repeat=3):
+        low, high = geometry._exact_sum([(np.array([a]), np.array([b])) for a, b in chosen])
+        exact = [sum(Fraction(term[e]) for term in chosen) for e in (0, 1)]
+        assert Fraction(float(low[0])) <= exact[0] and exact[1] <= Fraction(float(high[0]))
+        size = sum(max(abs(a), abs(b)) for a, b in chosen)
+        assert exact[0] - Fraction(float(low[0])) <= Fraction(size) / 2**48
+        assert Fraction(float(high[0])) - exact[1] <= Fraction(size) / 2**48
+
+
+@pytest.mark.parametrize("formula", FORMULAS[4:6])
+def test_components_are_cut_from_a_length_on(formula: str) -> None:
+    """Components of 2^-62 and more have squares that do not vanish."""
+    least = 2.0**-62
+    zero = Range(np.zeros(LANES), np.zeros(LANES))
+    for share, is_cut in ((0.9, False), (1.1, True), (0.99, False), (1.01, True)):
+        low = float(np.float32(least * share))
+        x = Range(np.full(LANES, low), np.full(LANES, 16.0 * low))
+        with np.errstate(over="ignore"):
+            (found, _) = geometry.normalize(context(with_formula(formula)), (x, zero))
+        assert found.cause is None
+        assert (found.high[0] == MOST) == is_cut and (found.high[0] > 2.0) != is_cut
