@@ -22,9 +22,8 @@ from codegen.passes.placement import branches
 from codegen.passes.ssa.flow import Branch, Carried, Flow, Item, Loop, Merge
 from codegen.passes.ssa.values import CALL, FIELD, LOCAL, PARAMETER, Value, Values, leaves
 
-NAME = "inline"
-MOST_UNROLLED = 1024
-"""Iterations of a loop with a return inside: such a loop is always unrolled."""
+MOST_UNROLLED = 128
+"""Iterations of a loop with a return inside: such a loop is always unrolled, each inside the one before."""
 
 Scope = dict[str, Value]
 CallRule = Callable[[Values, ir.Function, dict[str, Value]], "ir.Expr | None"]
@@ -42,8 +41,8 @@ class Inliner:
 
     library: Library
     values: Values
-    keep: Collection[str] = ()
-    unroll: int = 8
+    keep: Collection[str]
+    unroll: int
     calls: tuple[CallRule, ...] = ()
     variants: Mapping[str, str] = field(default_factory=dict)
     items: list[Item] = field(default_factory=list)
@@ -121,26 +120,24 @@ class Inliner:
         self.items, self.values.line = outer, line
         (then, then_items, then_result), (orelse, else_items, else_result) = sides
         branch = Branch(condition, then_items, else_items, [])
-        if then_result is not None and else_result is not None:
+        if then_result is not None:  # then what follows is part of both sides, and both return
+            assert else_result is not None
             merged = self.merged(branch, "result", then_result, else_result)
             self.finish(branch)
             return merged
         for name in scope:
-            if then[name] is not orelse[name]:
-                scope[name] = self.merged(branch, name, then[name], orelse[name])
-            else:
-                scope[name] = then[name]
+            scope[name] = self.merged(branch, name, then[name], orelse[name])
         self.finish(branch)
         return None
 
     def merged(self, branch: Branch, name: str, a: Value, b: Value) -> Value:
         """One value for both ways: a choice where both are cheap, else a leaf that the branch binds."""
+        if a is b:
+            return a
         if isinstance(a, dict):
             assert isinstance(b, dict)
             return {key: self.merged(branch, key, a[key], b[key]) for key in a}
         assert not isinstance(b, dict)
-        if a is b:
-            return a
         if branches.select_is_cheaper(branch, a, b):
             chosen = self.values.build(ir.Select(a.type, branch.condition, a, b))
             self.values.hint(chosen, name, FIELD)
@@ -303,7 +300,5 @@ def _iterations(s: ir.For, limit: ir.Expr | None) -> tuple[ir.Stmt, ...]:
         raise UserError(
             f"a loop that may return runs {s.stop - s.start} times; at most {MOST_UNROLLED} are unrolled"
         )
-    bodies = (
-        (ir.Let(s.name, ir.Const(s.index_type, i), line=s.line), *s.body) for i in range(s.start, s.stop)
-    )
+    bodies = ((ir.Let(s.name, ir.Const(s.index_type, i)), *s.body) for i in range(s.start, s.stop))
     return tuple(statement for body in bodies for statement in body)

@@ -48,7 +48,7 @@ def probe(name: str) -> tuple[Values, list[ir.Expr], ir.Function]:
     function = LIBRARY.function(name)
     values = Values(rules=(components,))
     subject = Subject(function)
-    flow = Inliner(LIBRARY, values).flow(function, subject.arguments(values))
+    flow = Inliner(LIBRARY, values, (), 8).flow(function, subject.arguments(values))
     order = place(flow, joined(values, function.returns, flow.result)).order[::-1]
     wanted = [e for e in order if not isinstance(e.type, Struct) and ir.children(e)]
     names = {id(e): f"part{k}" for k, e in enumerate(wanted)}

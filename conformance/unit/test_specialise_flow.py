@@ -218,7 +218,7 @@ RETURNING = (
 def test_loop_that_may_return_is_unrolled_or_refused(tmp_path: Path) -> None:
     refused = {
         "min(n, 4)": 'over "i" that may return ends at a value that is not known',
-        "1025": "at most 1024",
+        "129": "at most 128",
     }
     for k, (end, why) in enumerate(refused.items()):
         library = library_of(tmp_path / str(k), RETURNING.format(end))
