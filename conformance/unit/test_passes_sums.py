@@ -50,6 +50,8 @@ def deep(inner: str, times: int, left: bool = False) -> str:
     return inner
 
 
+COUNTED = "(1.0 + (2.0 + (3.0 + (4.0 + k))))"
+DEEPER = "(1.0 + (2.0 + (3.0 + (4.0 + (5.0 + k)))))"
 FOUR = "((e + f) + (g + h))"
 LEFT: dict[str, str] = {
     "(r + k) - k": "r",
@@ -75,10 +77,19 @@ LEFT: dict[str, str] = {
     "((r + k) * (r + k) - k * k) - 2.0 * r * k": "r * r",
     "r * k + (k * (r * -2.0) + r * k)": "0",
     "abs(r + k) * (k + 1.0) - abs(r + k) * k": "abs(r + k)",
-    deep("k", 5) + " - k": "((((e + d) + c) + b) + a)",
-    deep("k", 5, left=True) + " - k": "((((a + b) + c) + d) + e)",
-    "k + " + deep("(r - k)", 4): "((((d + c) + b) + a) + r)",
-    deep("(r - k)", 4, left=True) + " + k": "((((r + a) + b) + c) + d)",
+    deep("k", 5) + " - k": "(((e + d) + c) + b) + a",
+    deep("k", 5, left=True) + " - k": "(((a + b) + c) + d) + e",
+    "k + " + deep("(r - k)", 4): "(((d + c) + b) + a) + r",
+    deep("(r - k)", 4, left=True) + " + k": "(((r + a) + b) + c) + d",
+    f"r * {COUNTED} - r * k": "10 * r",
+    f"{COUNTED} * r - k * r": "10 * r",
+    f"-{COUNTED} + k": "-10",
+    "2.0 * r + " + deep("(r * -2.0)", 4): "((d + c) + b) + a",
+    "((r + k) * (r + k) - k * k) + r * r": "((2 * r) * r) + ((2 * r) * k)",
+    "r * r + ((r + k) * (r + k) - k * k)": "((2 * r) * r) + ((2 * r) * k)",
+    "0.5 * ((r + k) * (r + k) - k * k) + r * r": "((1.5 * r) * r) + (r * k)",
+    "((r + k) * (r + k) - k * k) * 0.5 + r * r": "((1.5 * r) * r) + (r * k)",
+    "-((r + k) * (r + k) - k * k) + 3.0 * r * r": "((2 * r) * r) - ((2 * r) * k)",
     f"(((a + b) + (c + d)) * {FOUR}) - ((a * {FOUR} + b * {FOUR}) + (c * {FOUR} + d * {FOUR}))": "0",
 }
 LEFT_OF_VECTORS: dict[str, str] = {
@@ -93,11 +104,6 @@ LEFT_OF_VECTORS: dict[str, str] = {
 }
 
 
-def same(text: str, shown: str) -> bool:
-    """Equal but for an outer pair of parentheses."""
-    return shown in (text, text.removeprefix("(").removesuffix(")"))
-
-
 @pytest.mark.parametrize("text", [*LEFT, *LEFT_OF_VECTORS])
 def test_what_is_left_of_a_sum(text: str) -> None:
     type_ = F32 if text in LEFT else VEC3
@@ -107,7 +113,8 @@ def test_what_is_left_of_a_sum(text: str) -> None:
     steps = [s for s in values.log if s.name == "sums"]
     assert steps
     assert all(s.why.startswith("real: terms cancel exactly") for s in steps)
-    assert same((LEFT | LEFT_OF_VECTORS)[text], values.show(found)) or "..." in values.show(found)
+    shown = values.show(found)
+    assert shown == (LEFT | LEFT_OF_VECTORS)[text] or "..." in shown
     for seed in range(3):
         assert value_of(found, point(seed)) == value_of(plain, point(seed))
 
@@ -128,6 +135,10 @@ STAYS: tuple[str, ...] = (
     "(1.0e-30 * r * 1.0e-30 + k) - k",
     deep("k", 6) + " - k",
     deep("k", 6, left=True) + " - k",
+    f"r * {DEEPER} - r * k",
+    f"{DEEPER} * r - k * r",
+    f"-{DEEPER} + k",
+    f"(((a + b) + (c + d)) * {FOUR} + i) - ((a * {FOUR} + b * {FOUR}) + (c * {FOUR} + d * {FOUR}))",
     f"{MANY} - (a * {SIX} + b * {SIX} + c * {SIX})",
     f"({MANY} + r) - r",
     f"(r + {MANY}) - r",
@@ -169,6 +180,9 @@ def test_products_with_constant_vectors_cancel() -> None:
         product = values.binary("*", w, constant)
         found = values.binary("-", values.binary("+", v, product), product)
         assert found is v
+        kept = values.binary("-", values.binary("+", values.binary("+", v, product), w), w)
+        at: dict[str, object] = {"v": (Fraction(1), Fraction(2)), "w": (Fraction(3), Fraction(5))}
+        assert value_of(kept, at) == (1 + 3 * Fraction(parts[0]), 2 + 5 * Fraction(parts[1]))
 
 
 def test_constants_never_cancel() -> None:

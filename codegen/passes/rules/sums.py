@@ -43,7 +43,7 @@ def cancellation() -> Rule:
     expanded = _Expansion()
 
     def rule(values: Values, e: ir.Expr) -> Rewrite | None:
-        if not (isinstance(e, ir.Binary) and e.op in "+-" and _element(e.type) == F32):
+        if not (isinstance(e, ir.Binary) and e.op in ("+", "-") and _element(e.type) == F32):
             return None
         if not _subtracts(e, DEEPEST):
             return None
@@ -112,7 +112,7 @@ class _Expansion:
         """One value by its number, which is below 0 for a constant with components of their own."""
         count = len(self._numbers)
         is_constant = constant_components(e) is not None
-        number = self._numbers.setdefault(id(e), -1 - count if is_constant else count)
+        number = self._numbers.setdefault(id(e), ~count if is_constant else count)
         self.atoms[number] = e
         return _Sum({(number,): 1})
 
