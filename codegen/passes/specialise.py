@@ -14,11 +14,11 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from codegen.errors import Place, UserError, unknown
+from codegen.errors import Place, UserError
 from codegen.ir import nodes as ir
 from codegen.ir.types import Struct, Type
 from codegen.library import Library
-from codegen.names import reserved
+from codegen.names import where_reserved
 from codegen.passes.analysis.ranges import Ranges
 from codegen.passes.inline import CallRule, Inliner
 from codegen.passes.placement.dead import pruned, used_parameters
@@ -232,8 +232,11 @@ def parameter_names(paths: Collection[str], function: ir.Function) -> dict[str, 
         short = path.rpartition(".")[2]
         clash = last.count(short) > 1 or (short in whole and short != path)
         names[path] = path.replace(".", "_") if clash else short
-        if names[path] in reserved():
-            raise unknown("name", names[path], ())
+        taken = where_reserved(names[path])
+        if taken is not None:
+            raise UserError(
+                f'{function.name}: parameter {path} would be called "{names[path]}", which is {taken}'
+            )
     return names
 
 
