@@ -207,8 +207,6 @@ class _Body:
                 assert isinstance(made, Struct)
                 pairs = zip(e.args, made.fields, strict=True)
                 return ir.Construct(made, tuple(self.coerced(a, f.type, scope) for a, f in pairs))
-            case ir.Builtin() if not BUILTINS[e.op].half:
-                return replace(e, args=tuple(self.coerced(a, a.type, scope) for a in e.args))
             case _:
                 parts = tuple(self.coerced(p, becomes(p.type), scope) for p in ir.children(e))
                 return replace(ir.rebuild(e, parts), type=becomes(e.type))

@@ -118,6 +118,7 @@ LARGE = {
     "choice where a half decides": ("    return (x * x if k > 0.0 else x) / x\n", True),
     "comparison": ("    return x if x * x > 80000.0 else 0.0\n", True),
     "comparison of close numbers": ("    return x if x + 0.25 > x else 0.0\n", True),
+    "beside a call of a literal": ("    return (x * x * square(1.0)) / x\n", False),
     "beside a half": ("    return (x * x + k) / x\n", False),
     "bits": ("    return bits_to_float(float_to_bits(x * x)) / x\n", True),
 }

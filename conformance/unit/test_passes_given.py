@@ -20,7 +20,7 @@ import pytest
 from codegen.errors import UserError
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Finite, Interval, Unit
-from codegen.ir.types import F32, VEC3, array_of
+from codegen.ir.types import F32, I32, VEC3, array_of
 from codegen.library import Library
 from codegen.passes.ssa.values import PARAMETER, Hint, Values, constant_components
 from codegen.passes.subject import Fact, Subject
@@ -141,6 +141,7 @@ def test_first_mistake_is_told(function: ir.Function) -> None:
     assert '"nobody"' in told({}, {"a": "nobody"})
     assert "is a vec3 and cannot be" in told({"d": (1.0, 0.0, 0.0)}, {"d": "a"})
     assert "as a constant and as" in told({"a": 1.0}, {"a": "ab"})
+    assert told({}, {"a": "a"}) == 'f: "a" cannot be given as equal to itself'
 
 
 def test_facts_without_an_end_are_open_there(function: ir.Function) -> None:
@@ -152,6 +153,36 @@ def test_facts_without_an_end_are_open_there(function: ir.Function) -> None:
         (Fact("a", 0.5, 0.5), (0.5, 0.5)),
     ):
         assert subject.fact(Values(), fact) == (ir.Var(F32, "a"), *ends)
+
+
+def test_wrong_facts_are_told_in_a_sentence(function: ir.Function) -> None:
+    def told(fact: Fact) -> str:
+        with pytest.raises(UserError) as error:
+            Subject(function).fact(Values(), fact)
+        return str(error.value)
+
+    assert told(Fact("a", 1.0, 0.0)) == 'f: fact "a": nothing is at least 1 and at most 0'
+    assert told(Fact("pair")) == 'f: fact "pair": pair is a Pair'
+    assert told(Fact("a +")) == 'f: fact "a +" is no expression of built-ins and parameters'
+    unknown = told(Fact("six + five + four * three - two + one"))
+    assert unknown.startswith('unknown parameter in f: fact "six + five'), "the first by its letters"
+    assert '"five"' in unknown
+
+
+def test_numbers_of_every_kind(function: ir.Function) -> None:
+    values = Values()
+    found = Subject(function, {"pair": {"first": -0.0, "second": 2}}).arguments(values)["pair"]
+    assert isinstance(found, dict)
+    assert [repr(e.value) for e in found.values() if isinstance(e, ir.Const)] == ["0.0", "2.0"]
+    for given, sentence in (
+        ((1.0, None, 0.0), "(1.0, None, 0.0) is no vec3"),
+        ((0.0, {}, 1.0), "(0.0, {}, 1.0) is no vec3"),
+        ((0.5, inf, 0.5), "(0.5, inf, 0.5) is no finite float32"),
+        (("a", "b", "c"), "('a', 'b', 'c') is no vec3"),
+    ):
+        with pytest.raises(UserError) as error:
+            Subject(function, {"share": given}).arguments(values)
+        assert str(error.value) == f"f: share: {sentence}"
 
 
 @pytest.fixture(scope="module")
@@ -166,6 +197,12 @@ def rows(function: ir.Function, tmp_path_factory: pytest.TempPathFactory) -> ir.
             ir.Parameter("lights", array_of(VEC3, 2), Unit()),
         ),
     )
+
+
+def test_facts_of_arrays_hold_for_every_row(rows: ir.Function) -> None:
+    e, low, high = Subject(rows).fact(Values(), Fact("sky.shares", 0.25, 0.5))
+    assert e == ir.Index(F32, ir.Var(array_of(F32, 2), "sky.shares"), ir.Var(I32, "any element"))
+    assert (low, high) == (0.25, 0.5)
 
 
 def one(value: float) -> ir.Const:
