@@ -194,7 +194,8 @@ WAYS = {
     "    a = 8.0 if p > 1.0 else -8.0\n    return a * a\n": ((64.0, 64.0), (0.0, 64.0)),
     "    s = 1.0 if p > 1.0 else -1.0\n    return 4.0 / s\n": ((-4.0, 4.0), None),
     "    if p > 1.0:\n        return 2.0\n    return 7.0\n": ((2.0, 7.0), (2.0, 7.0)),
-    "    r = 1.0\n    if p > 1.0:\n        r = 6.0\n        if q > 1.0:\n            r = 7.0\n    return r\n": (
+    "    r = 1.0\n    if p > 1.0:\n        r = 6.0\n"
+    "        if q > 1.0:\n            r = 7.0\n    return r\n": (
         (1.0, 7.0),
         (1.0, 7.0),
     ),
@@ -292,11 +293,15 @@ def test_what_lies_inside() -> None:
     for value, expected in (
         (low, [True, True, True]),
         (high, [True, True, True]),
-        (high + [0.0, 0.5], [False, False, True]),
+        (high + np.array([0.0, 0.5]), [False, False, True]),
         (low - [0.5, 0.0], [False, False, True]),
         (np.full((3, 2), np.nan), [False, False, True]),
     ):
         assert found.contains(value).tolist() == expected
     struct = Permitted({"a": low, "b": low[:, 0]}, {"a": high, "b": high[:, 0]}, np.zeros(3, np.int16), ())
     assert struct.contains({"a": low, "b": np.array([0.5, 1.5, 1.0])}).tolist() == [True, False, True]
-    assert struct.contains({"a": low + [0.0, 9.0], "b": low[:, 0]}).tolist() == [False, False, False]
+    assert struct.contains({"a": low + np.array([0.0, 9.0]), "b": low[:, 0]}).tolist() == [
+        False,
+        False,
+        False,
+    ]

@@ -302,7 +302,7 @@ def test_ends_that_are_settled_already() -> None:
     x = np.array([1.0, 2.0])
     assert not arithmetic.bounded(here, x, x.copy(), None).is_point
     assert arithmetic.bounded(here, x, x.copy(), None, same=True).is_point
-    apart = arithmetic.bounded(here, x, x + [0.0, 1.0], None, same=True)
+    apart = arithmetic.bounded(here, x, x + np.array([0.0, 1.0]), None, same=True)
     assert not apart.is_point and apart.high.tolist() == [1.0, 3.0]
     kept = arithmetic.bounded(here, x, x, None, (x, x + 1.0))
     assert kept.product is not None and kept.cause is None
