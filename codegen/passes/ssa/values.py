@@ -195,16 +195,16 @@ def _other_key(e: ir.Expr) -> tuple[object, ...]:
 
 
 _KEYS: dict[type, Callable[[Any], tuple[object, ...]]] = {
-    ir.Const: lambda e: ("const", e.type.name, type(e.value), repr(e.value)),
-    ir.Var: lambda e: ("var", e.name),
+    ir.Const: lambda e: (ir.Const, e.type.name, repr(e.value)),
+    ir.Var: lambda e: (ir.Var, e.name),
     ir.Unary: _operation_key,
     ir.Binary: _operation_key,
     ir.Builtin: _operation_key,
-    ir.Call: lambda e: ("call", e.function, *map(id, e.args)),
+    ir.Call: lambda e: (ir.Call, e.function, *map(id, e.args)),
     ir.Construct: _other_key,
     ir.Convert: _other_key,
-    ir.Member: lambda e: ("member", e.name, id(e.value)),
-    ir.Swizzle: lambda e: ("swizzle", e.components, id(e.value)),
+    ir.Member: lambda e: (ir.Member, e.name, id(e.value)),
+    ir.Swizzle: lambda e: (ir.Swizzle, e.components, id(e.value)),
     ir.Index: _other_key,
     ir.Select: _other_key,
 }
