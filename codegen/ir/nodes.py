@@ -10,36 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from operator import attrgetter, is_
-from typing import Any, TypeVar
+from typing import Any
 
 from codegen.errors import Place
 from codegen.ir.domains import Domain
+from codegen.ir.once import hashed_once
 from codegen.ir.types import I32, TEXTURE, Struct, Type
 
-Node = TypeVar("Node")
 
-
-def _hashed_once(kind: type[Node]) -> type[Node]:
-    """A frozen class whose objects remember their hash: trees are keys, and share parts."""
-    plain: Callable[[Node], int] = kind.__hash__
-
-    def hashed(self: Node) -> int:
-        known: dict[str, Any] = self.__dict__
-        if "_hash" not in known:
-            known["_hash"] = plain(self)
-        found: int = known["_hash"]
-        return found
-
-    def state(self: Node) -> dict[str, Any]:
-        """What another process may know: hashes of texts differ from process to process."""
-        return {name: value for name, value in self.__dict__.items() if name != "_hash"}
-
-    kind.__hash__ = hashed  # type: ignore[assignment]
-    kind.__getstate__ = state  # type: ignore[method-assign, assignment]
-    return kind
-
-
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Const:
     """A literal; a float is already rounded to float32."""
@@ -48,7 +27,7 @@ class Const:
     value: float | int | bool
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Var:
     """A parameter or a local."""
@@ -57,7 +36,7 @@ class Var:
     name: str
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Unary:
     """`-`, `~` or `not`."""
@@ -67,7 +46,7 @@ class Unary:
     operand: Expr
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Binary:
     """An operator of codegen.ops, named as in the source (`+`, `and`, `<`)."""
@@ -78,7 +57,7 @@ class Binary:
     right: Expr
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Builtin:
     """A built-in of the op registry."""
@@ -88,7 +67,7 @@ class Builtin:
     args: tuple[Expr, ...]
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Call:
     """A call of a library function."""
@@ -98,7 +77,7 @@ class Call:
     args: tuple[Expr, ...]
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Construct:
     """A vector from scalars (one: splat) or shorter vectors, a struct or an array from its parts in order."""
@@ -107,7 +86,7 @@ class Construct:
     args: tuple[Expr, ...]
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Convert:
     """A conversion between scalar number types: exact or rounded; to integers truncating."""
@@ -116,7 +95,7 @@ class Convert:
     operand: Expr
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Member:
     """A field of a struct value."""
@@ -126,7 +105,7 @@ class Member:
     name: str
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Swizzle:
     """Components of a vector, read only; one letter gives a scalar."""
@@ -136,7 +115,7 @@ class Swizzle:
     components: str
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Index:
     """An element of an array by an i32 or u32 that is one of its numbers."""
@@ -146,7 +125,7 @@ class Index:
     index: Expr
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Select:
     """`if_true if condition else if_false`; both sides are evaluated."""
@@ -160,7 +139,7 @@ class Select:
 Expr = Const | Var | Unary | Binary | Builtin | Call | Construct | Convert | Member | Swizzle | Index | Select
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Let:
     """The first assignment of a local; `mutable` where it is assigned again."""
@@ -171,7 +150,7 @@ class Let:
     line: int = field(default=0, compare=False)
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Assign:
     """A later assignment."""
@@ -181,7 +160,7 @@ class Assign:
     line: int = field(default=0, compare=False)
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class If:
     """A branch on a scalar condition."""
@@ -192,7 +171,7 @@ class If:
     line: int = field(default=0, compare=False)
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class For:
     """`for name in range(start, stop)` with constant bounds; name is an i32.
@@ -213,7 +192,7 @@ class For:
         return I32 if self.limit is None else self.limit.type
 
 
-@_hashed_once
+@hashed_once
 @dataclass(frozen=True)
 class Return:
     """The function's value."""
@@ -319,9 +298,23 @@ _OVER: dict[type, Callable[[Any, tuple[Expr, ...]], Expr]] = {
 """Tables, since these two are what every pass does most."""
 
 
-def children(e: Expr) -> tuple[Expr, ...]:
-    """The direct operands of an expression, in evaluation order."""
-    return _CHILDREN.get(type(e), _none)(e)
+class _Operands:
+    """The attribute of an expression that holds its operands once they were asked for."""
+
+    def __init__(self, of: Callable[[Any], tuple[Expr, ...]]) -> None:
+        self.of = of
+
+    def __get__(self, e: Any, kind: type) -> tuple[Expr, ...]:
+        found: tuple[Expr, ...] = self.of(e)
+        e.__dict__["operands"] = found
+        return found
+
+
+for _kind in (Const, Var, *_CHILDREN):
+    _kind.operands = _Operands(_CHILDREN.get(_kind, _none))  # type: ignore[attr-defined]
+
+children: Callable[[Expr], tuple[Expr, ...]] = attrgetter("operands")
+"""The direct operands of an expression, in evaluation order."""
 
 
 def rebuild(e: Expr, parts: tuple[Expr, ...]) -> Expr:

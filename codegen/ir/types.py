@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from codegen.ir.domains import Domain
+from codegen.ir.once import hashed_once
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Scalar:
     """A 32-bit scalar (bool: a truth value), or the 16-bit float f16."""
@@ -14,6 +16,7 @@ class Scalar:
     name: str
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Vector:
     """A short vector; `name` as in the source (vec3, uvec2)."""
@@ -23,6 +26,7 @@ class Vector:
     size: int
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Field:
     """One field of a struct."""
@@ -32,6 +36,7 @@ class Field:
     domain: Domain | None = field(compare=False, default=None)
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Struct:
     """A struct; two structs are the same type if their names and fields agree."""
@@ -44,6 +49,7 @@ class Struct:
         return next((f for f in self.fields if f.name == name), None)
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Array(Struct):
     """`size` values of one scalar or vector type, told apart by a number: a struct with the fields 0, 1, ...
@@ -60,6 +66,7 @@ class Array(Struct):
         return len(self.fields)
 
 
+@hashed_once
 @dataclass(frozen=True)
 class Texture:
     """A handle of a map with its sampler: only a parameter has it, and only lookups and calls take it."""
