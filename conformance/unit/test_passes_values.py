@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import replace
-from dataclasses import replace
 
 import numpy as np
 import pytest
