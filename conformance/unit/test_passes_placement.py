@@ -357,6 +357,9 @@ def test_what_nothing_needs_is_dead() -> None:
     decided = branch(values, values.build(ir.Binary(BOOL, "<", q, X)), [("c", Y, Z)])
     kept = pruned(Flow([inner, decided], leaf(values, "c@merged")))
     assert names_of(kept.items) == ["q", "[", "]", "c", "(", "|", ")"]
+    t_in = leaf(values, "t@in")
+    handed = loop(values, "k", [], [("t", X, Y), ("r", X, t_in)])
+    assert names_of(pruned(Flow([handed], leaf(values, "r@out"))).items) == ["t", "r", "[", "]"]
     start = loop(values, "k", [], [("r", q, Y)])
     assert names_of(pruned(Flow([inner, start], leaf(values, "r@out"))).items) == [*"q[]r[]"]
     assert pruned(Flow([sides], Z)).result is Z
