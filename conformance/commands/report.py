@@ -20,6 +20,7 @@ from conformance.bench.emission import emission_figures
 from conformance.bench.inputs import groups
 from conformance.bench.record import rounded
 from conformance.bench.run import Options, measure, places
+from conformance.bench.visits import LEAST_VISITS
 from conformance.light import plan
 from conformance.light.record import keep as keep_light
 from conformance.light.record import recorded as recorded_light
@@ -175,6 +176,18 @@ def say_agreement(now: list[dict[str, Any]], before: list[dict[str, Any]]) -> No
     )
     for pair in found.contradictions:
         click.echo(f"          {pair}")
+    once = [which for which, results in (("this", now), ("the earlier", before)) if visited_once(results)]
+    if once:
+        click.echo(
+            f"          single visits in {' and '.join(once)} report: such orders may not be reproducible"
+        )
+
+
+def visited_once(results: list[dict[str, Any]]) -> bool:
+    """Whether any result rests on single visits, as quick ones and those of earlier versions do."""
+    modes = [data for r in results for g in r["groups"] for data in g["modes"].values()]
+    visits = [data.get("visits") for data in modes]
+    return any(not isinstance(v, list) or len(v) < LEAST_VISITS for v in visits)
 
 
 class Watcher(Progress):

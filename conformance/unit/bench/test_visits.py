@@ -9,6 +9,7 @@ Plan.
   two runs    over many pairs whose visits shift each by itself, two whole runs never contradict each other on
               a pair that differs by more than CLOSE
   records     the rounds of every visit, and the rest of the first visit's data as it was
+  comparing   a report of single visits is told from one of several
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from conformance.bench.visits import (
     worth_another,
 )
 from conformance.bench.worker import Job
+from conformance.commands.report import say_agreement, visited_once
 
 SEED = 20_264
 COUNT = VISIT.rounds
@@ -226,6 +228,18 @@ def test_a_later_visit_survives_the_way_to_its_worker() -> None:
     machine = Machine({"a": 1.0, "b": 1.07}, 0.0, SEED)
     run(machine)
     assert all(Job.from_json(job.to_json()) == job for job in machine.asked)
+
+
+def test_a_comparison_says_that_a_report_rests_on_single_visits(capsys: pytest.CaptureFixture[str]) -> None:
+    net = {"a": 1.0, "b": 1.5}
+    head = {"device": {"target": "glsl", "short": "llvmpipe"}}
+    once, twice = ({**run(Machine(net, 0.0, SEED), most=most), **head} for most in (1, 2))
+    older = {"groups": [{"base": "a", "modes": {"throughput": {"undecided": []}}}]}
+    assert [visited_once([r]) for r in (once, twice, older)] == [True, False, True]
+    say_agreement([twice], [twice])
+    assert "single visits" not in capsys.readouterr().out
+    say_agreement([twice], [{**twice, **older}])
+    assert "single visits in the earlier report" in capsys.readouterr().out
 
 
 def order(data: Mapping[str, Any]) -> float | None:
