@@ -129,6 +129,16 @@ BODIES: dict[str, tuple[str, dict[str, Any], int, int]] = {
         "    return pair.first + pair.second.x\n",
         *({}, 0, 0),
     ),
+    "one of two stays": (
+        "    y = x\n    z = k\n    for i in range(9):\n        y = y * 0.5 + z\n        z = z * 1.0\n"
+        "    return y * z\n",
+        *({}, 0, 1),
+    ),
+    "branch inside a loop": (
+        "    y = x\n    for i in range(9):\n        if y > k:\n            y = y - exp(k)\n"
+        "        y = y + 0.25\n    return y\n",
+        *({}, 0, 1),
+    ),
     "two that change places": (
         "    a = x\n    b = k\n    for i in range(7):\n        c = a\n        a = b\n        b = c\n"
         "    return a - 3.0 * b\n",
@@ -198,6 +208,28 @@ def test_what_a_branch_leaves_alone_is_not_assigned(library: Library) -> None:
     assert len(assigned) == 2, "y of the branch and y of the loop"
     assert all(name.startswith("y") for name in assigned)
     assert not [s for s in found.log if "z if" in s.what]
+
+
+def test_choices_are_called_like_what_the_source_chooses(tmp_path: Path) -> None:
+    text = "def f(x: X, k: X) -> f32:\n    y = x\n    if x > k:\n        y = k * 2.0\n    return y * y + y\n"
+    body = specialise(library_of(tmp_path, text), "f").function.body
+    assert [s.name for s in body if isinstance(s, ir.Let)] == ["y"]
+
+
+def test_what_returns_leave_is_called_result(tmp_path: Path) -> None:
+    text = (
+        "@helper\ndef early(x: X, k: X) -> f32:\n    if x > k:\n        return x * k\n    return x + k\n"
+        "def f(x: X, k: X) -> f32:\n    return early(x, k) * 1.0\n"
+    )
+    (step,) = specialise(library_of(tmp_path, text), "f").log
+    assert step.what.startswith("result * 1 -> ")
+
+
+@pytest.mark.parametrize(("ends", "turns"), [("3, 3", 0), ("5, 3", 0), ("2, 4", 2)])
+def test_turns_of_a_loop_are_counted(ends: str, turns: int, tmp_path: Path) -> None:
+    text = f"def f(x: X) -> f32:\n    y = x\n    for i in range({ends}):\n        y = y * x\n    return y\n"
+    log = specialise(library_of(tmp_path, text), "f", unroll=2).log
+    assert [(s.name, s.what) for s in log] == [("unroll", f"{turns} iterations over i")]
 
 
 def test_numbers_of_loops_are_known_to_lie_in_their_range(tmp_path: Path) -> None:
