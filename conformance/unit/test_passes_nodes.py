@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from functools import partial
 
 import pytest
 
@@ -193,7 +194,8 @@ TRANSFERRED: list[tuple[ir.Expr, list[tuple[float, float]]]] = [
 
 def known() -> Values:
     scalars = {n: ir.Parameter(n, F32, Interval(*ends)) for n, ends in RANGES.items()}
-    whole = {n: ir.Parameter(n, U32 if n == "n" else I32, Interval(*map(float, e))) for n, e in WHOLE.items()}
+    types = {"n": U32, "k": I32}
+    whole = {n: ir.Parameter(n, types[n], Interval(float(a), float(b))) for n, (a, b) in WHOLE.items()}
     return Values(parameters={**scalars, **whole, "c": ir.Parameter("c", BOOL, None)})
 
 
@@ -243,7 +245,7 @@ def test_what_is_remembered_is_made_once_and_not_without_end(monkeypatch: pytest
         return ()
 
     for k in (1, 1, 2, 3, 1):
-        assert transfer.remembered(k, lambda k=k: make(k)) == ()
+        assert transfer.remembered(k, partial(make, k)) == ()
     assert calls == [1, 2, 3]
-    transfer.remembered(4, lambda: make(4), "kept alive")
+    transfer.remembered(4, partial(make, 4), "kept alive")
     assert transfer._memory == {4: ((), "kept alive")}
