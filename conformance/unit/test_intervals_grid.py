@@ -178,6 +178,10 @@ def test_sign_is_kept_within_any_number_of_ulp() -> None:
     first, last = arithmetic.within_ulp(low, high, 1e9, 1e9)
     assert (first >= 0.0).tolist() == [True, False, True, False, True, False]
     assert (last <= 0.0).tolist() == [False, True, True, False, False, True]
+    tiny = np.array([-1e-60, 1e-60])
+    for ends in ((tiny, tiny), (tiny, tiny.copy())):  # which is no limit to either side
+        first, last = arithmetic.within_ulp(*ends, 1e9, 1e9)
+        assert first[0] < -0.99e9 * 2.0**-149 and last[1] > 0.99e9 * 2.0**-149
     one = np.array([1e-30, -1e-30, 0.0])
     first, last = arithmetic.within_ulp(one, one, 1e9, 1e9)
     assert (first >= 0.0).tolist() == [True, False, True] and (last <= 0.0).tolist() == [False, True, True]

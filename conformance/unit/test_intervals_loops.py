@@ -46,8 +46,8 @@ def context(table: Table, loops: bool, lanes: int = LANES) -> Context:
     made = Context(table, CauseBook(), lanes)
     assert made.loops == table.flush
     made.loops = loops
-    # What an operand that may be anything was told of.
-    made.book.code(Cause("earlier", 1, "/", "y", "the divisor may be 0"))
+    for line in (1, 2):  # what operands that may be anything were told of
+        made.book.code(Cause("earlier", line, "/", "y", "the divisor may be 0"))
     return made
 
 
@@ -69,7 +69,7 @@ def operand(rng: np.random.Generator, kind: str, palette: str) -> Range:
     if "point" in kind:
         return Range(p, p)
     if kind == "anything":
-        codes = (np.arange(LANES) % 3 == 1).astype(np.int16)
+        codes = ((np.arange(LANES) % 3 == 1) * rng.integers(1, 3)).astype(np.int16)
         return arithmetic.anything(low, high, codes)
     if kind == "product":  # what was rounded to these ends may have been anything between their neighbours
         step = 2.0**-26
