@@ -64,14 +64,16 @@ class LazyGroup(click.Group):
         module, attribute = COMMANDS[cmd_name].split(":")
         if cmd_name in ONE_THREAD:
             os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when NumPy is imported
+        if module in sys.modules:
+            return _attribute(module, attribute)
         collects = gc.isenabled()
         gc.disable()  # what is loaded stays: looking for cycles in it takes a tenth of the time
         try:
-            found: click.Command = getattr(importlib.import_module(module), attribute)
+            return _attribute(module, attribute)
         finally:
+            gc.freeze()  # nor is it looked at later, and at the end
             if collects:
                 gc.enable()
-        return found
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         room = formatter.width - 6 - max(map(len, COMMANDS))
@@ -86,6 +88,11 @@ class LazyGroup(click.Group):
         if args and args[0] not in COMMANDS and not args[0].startswith("-"):
             raise UserError(f'unknown command "{args[0]}"{nearest(args[0], COMMANDS)}')
         return super().resolve_command(ctx, args)
+
+
+def _attribute(module: str, name: str) -> click.Command:
+    found: click.Command = getattr(importlib.import_module(module), name)
+    return found
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
