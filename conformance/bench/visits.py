@@ -1,7 +1,7 @@
 """Which of two members is faster, told from several visits: each times them in a process of its own.
 
 Within one process the rounds agree with each other far better than two processes do: where a driver puts code
-and data, and what else the processor does for a minute, shifts all of them alike. So an order counts as
+and data, and what else the processor does meanwhile, shifts all of them alike. So an order counts as
 decided only where visits that know nothing of each other say the same.
 
 Every visit votes for the member that its own rounds put first, or for none. A member that leads by three
