@@ -14,7 +14,7 @@ import pytest
 from codegen.evaluate import evaluate
 from codegen.execute import execute
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, I32
+from codegen.ir.types import BOOL, F32, I32, U32
 from codegen.ir.unit import Unit
 from codegen.ir.verify import verify_selection
 from codegen.library import load_library
@@ -44,6 +44,37 @@ def test_only_decided_ones_are_dropped(name: str, tmp_path: Path) -> None:
         bodies.append(drop_decided(Unit(selection.functions, ())).functions[0].body)
         verify_selection(drop_decided(Unit(selection.functions, ())).functions)
     assert bodies[0] == bodies[1]
+
+
+I, U, TEN, LESS = ir.Var(I32, "i"), ir.Var(U32, "u"), ir.Const(I32, 10), ir.Const(I32, -10)
+SETTLED: list[tuple[ir.Expr, ir.Expr]] = [
+    (ir.Convert(U32, TEN), ir.Const(U32, 10)),
+    (ir.Convert(U32, LESS), ir.Const(U32, 2**32 - 10)),
+    (ir.Convert(U32, ir.Unary(I32, "negate", TEN)), ir.Const(U32, 2**32 - 10)),
+    (ir.Convert(U32, ir.Binary(I32, "*", TEN, LESS)), ir.Const(U32, 2**32 - 100)),
+    (ir.Convert(U32, I), ir.Convert(U32, I)),
+    (ir.Convert(U32, ir.Const(F32, 2.0)), ir.Convert(U32, ir.Const(F32, 2.0))),
+    (ir.Convert(F32, TEN), ir.Convert(F32, TEN)),
+    (ir.Convert(I32, ir.Const(U32, 7)), ir.Convert(I32, ir.Const(U32, 7))),
+    (ir.Select(U32, ir.Const(BOOL, True), U, ir.Const(U32, 1)), U),
+    (ir.Select(U32, ir.Const(BOOL, False), ir.Const(U32, 1), U), U),
+    (ir.Select(I32, ir.Binary(BOOL, "<", TEN, LESS), TEN, I), I),
+    (ir.Select(I32, ir.Binary(BOOL, "<", LESS, TEN), I, TEN), I),
+    (
+        ir.Select(I32, ir.Binary(BOOL, "<", I, TEN), I, TEN),
+        ir.Select(I32, ir.Binary(BOOL, "<", I, TEN), I, TEN),
+    ),
+]
+
+
+@pytest.mark.parametrize(("given", "wanted"), SETTLED, ids=range(len(SETTLED)))
+def test_constants_are_settled_and_nothing_else(given: ir.Expr, wanted: ir.Expr) -> None:
+    parameters = ir.Parameter("i", I32, None), ir.Parameter("u", U32, None)
+    place = load_library().function("sin_angle")
+    whole = replace(place, parameters=parameters, returns=given.type, body=(ir.Return(given),))
+    (made,) = drop_decided(Unit((whole,), ())).functions
+    assert made.body == (ir.Return(wanted),)
+    assert (made.parameters, made.returns) == (parameters, given.type)
 
 
 def test_the_library_has_none() -> None:
