@@ -124,6 +124,7 @@ LOOKED_AT: list[tuple[str, ir.Expr, bool]] = [
     ("clamp(a, b, a)", call("clamp", X, Y, TWO), False),
     ("clamp(a, b, b)", call("clamp", X, Y, X), False),
     ("clamp(a, b, b)", call("clamp", X, Y, Y), True),
+    ("clamp(a, 0, 0)", call("clamp", X, ir.Const(F32, 0.0), ir.Const(F32, -0.0)), True),
     *((f"a * {k}", both("*", X, ir.Const(F32, float(k))), True) for k in (0, 1, -1, 2)),
     *((f"a * {k}", both("*", X, TWO), False) for k in (0, 1, -1)),
     *((f"a * {k}", both("*", X, ir.Const(F32, -float(k))), False) for k in (1, -1)),

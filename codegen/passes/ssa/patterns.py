@@ -123,7 +123,7 @@ def _word(e: ir.Expr) -> str:
 
 
 def _number_word(x: float | int | bool) -> str:
-    return str(x) if isinstance(x, bool) else _WRITTEN.get(x, "number")
+    return _WRITTEN.get(x, "number")
 
 
 def may_match(pattern: Operation, of: tuple[Outline, ...]) -> bool:
