@@ -106,11 +106,11 @@ def test_literals_are_one_value_each() -> None:
     seen: Any = [frame.expr(ir.Const(type_, number)) for type_, number in literals]
     assert len({value.number for value in seen}) == len(literals)
     for value, (type_, number) in zip(seen, literals, strict=True):
-        assert frame.expr(ir.Const(type_, number)) is value
         assert value.low[0] == number and np.signbit(value.low[0]) == np.signbit(number)
         assert isinstance(value, Range if type_ == F32 else Whole)
         if isinstance(value, Whole):
             assert value.is_signed == (type_ == I32)
+        assert frame.expr(ir.Const(type_, number)) is value
     one = ir.Const(F32, 7.0)
     assert frame.expr(one) is frame.expr(one)
     assert Frame(LIBRARY, context, function, {}).expr(ir.Const(F32, 7.0)) is frame.expr(one)
