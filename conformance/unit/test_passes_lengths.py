@@ -38,7 +38,13 @@ PARAMETERS: dict[str, tuple[Type, Domain | None]] = {
     "vs": (ARRAY, Finite()),
     "i": (I32, None),
 }
-CONSTANTS = {"a": (3.0, 4.0, 0.0), "b": (0.0, 0.0, 12.0), "c": (0.0, 0.6, 0.8), "d": (-6.0, -8.0, 0.0)}
+CONSTANTS = {
+    "a": (3.0, 4.0, 0.0),
+    "b": (0.0, 0.0, 12.0),
+    "c": (0.0, 0.6, 0.8),
+    "d": (-6.0, -8.0, 0.0),
+    "o": (0.0, 0.0, 0.0),
+}
 GIVEN = {
     "s": (0.5, 2.0),
     "r": (-2.0, 1.0),
@@ -51,6 +57,7 @@ GIVEN = {
     "dot(vec3(3, 4, 0), vec3(0, 0, 12))": (0.0, 0.0),
     "dot(vec3(3, 4, 0), vec3(-6, -8, 0))": (-50.0, -50.0),
     "dot(w, z)": (-40.0, -30.0),
+    "dot(u, vec3(0, 0.6, 0.8))": (0.96875, 1.0),
 }
 
 
@@ -126,6 +133,7 @@ EXACT: dict[str, tuple[float, float]] = {
     "a - w": (2.0, 8.0),
     "u + t": (math.sqrt(3.0), math.sqrt(3.25)),
     "u - t": (math.sqrt(0.75), 1.0),
+    "u - c": (0.0, 0.25),
     "a + box": (5.0 - math.sqrt(12.0), 5.0 + math.sqrt(12.0)),
     "a * s": (2.5, 10.0),
     "s * a": (2.5, 10.0),
@@ -134,6 +142,7 @@ EXACT: dict[str, tuple[float, float]] = {
     "g * a": (10.0, 20.0),
     "w * g": (0.0, 12.0),
     "a * zero": (0.0, 0.0),
+    "o * s": (0.0, 0.0),
     "a / s": (2.5, 10.0),
     "a / g": (1.25, 2.5),
     "a / one": (5.0, 5.0),
@@ -238,6 +247,17 @@ def test_ends_of_products() -> None:
     assert lengths.product(found["v"], found["u"]) == (-math.inf, math.inf)
 
 
+def test_roundings_of_cross_products_count_by_the_longer_vector() -> None:
+    values, lengths, found = made()
+    for text, exact in (
+        ("cross(long, u)", 100.0),
+        ("cross(u, long)", 100.0),
+        ("cross(long - u, long + u)", 200.0),
+    ):
+        most = lengths.of(expression(values, found, text))[1]
+        assert exact + 3.0 * STEP * 100.0**2 < most < exact + tolerance("length_bound") * 100.0**2
+
+
 def test_a_contradiction_is_told_elsewhere() -> None:
     """Of w and z no product of -40 is possible; whoever asks for its range is told so."""
     values, lengths, found = made()
@@ -253,6 +273,8 @@ def test_arrays_have_the_lengths_of_their_elements() -> None:
         assert most == pytest.approx(12.0, abs=tolerance("length_bound"))
     us = values.intern(ir.Index(VEC3, found["us"], found["i"]))
     assert lengths.of(us) == lengths.of(found["us"]) == (1.0 - norms.UNIT_SLACK, 1.0 + norms.UNIT_SLACK)
+    for e in (values.number(2.0, F32), values.binary("+", found["s"], found["one"])):
+        assert lengths.of(e) == (0.0, math.inf)  # numbers have no length
     whole = values.intern(ir.Var(array_of(I32, 2), "ints"))
     assert lengths.of(whole) == (0.0, math.inf)
 

@@ -87,10 +87,8 @@ class Lengths:
     def operand(self, e: ir.Expr) -> tuple[float, float]:
         """The lengths of an operand, for which the ranges of its components are known too."""
         least, most = self.of(e)
-        if isinstance(e.type, Vector):
-            sizes = [max(-b.low, b.high) for b in self.bounds(e)]
-            most = min(most, math.hypot(*sizes) * (1.0 + ROUNDING))
-        return least, most
+        sizes = [max(-b.low, b.high) for b in self.bounds(e)]
+        return least, min(most, math.hypot(*sizes) * (1.0 + ROUNDING))
 
     def _found(self, e: ir.Expr) -> tuple[float, float]:
         if is_unit(self.values, e):
