@@ -22,6 +22,7 @@ WEIGHTS = {"arithmetic": 1, "special": 8, "select": 1, "compare": 1}
 """Rough relative costs, for decisions that no measurement is worth."""
 _COMPARISONS = frozenset({"<", "<=", ">", ">=", "==", "!="})
 _ARITHMETIC = frozenset({"add", "multiply"})
+_OPERATIONS = (ir.Binary, ir.Builtin, ir.Unary)
 
 
 def operations(function: ir.Function, library: Library | None = None) -> dict[str, int]:
@@ -100,9 +101,9 @@ def expression_operations(e: ir.Expr) -> Mapping[str, int]:
 
 def number_of_operations(e: ir.Expr) -> int:
     """Operations of one node, its operands left out, whatever their class."""
-    if isinstance(e, ir.Binary | ir.Builtin | ir.Unary):
+    if isinstance(e, _OPERATIONS):
         return _number(e.op, isinstance(e, ir.Builtin), _width(e))
-    return sum(expression_operations(e).values())
+    return sum(expression_operations(e).values()) if isinstance(e, ir.Select) else 0
 
 
 @functools.cache

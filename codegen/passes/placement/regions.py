@@ -6,8 +6,9 @@ after    sqrt(k) before the loop                               sqrt(k) inside th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 from codegen.ir import nodes as ir
 from codegen.ir.types import Array
@@ -78,21 +79,33 @@ def place(flow: Flow, result: ir.Expr) -> Placement:
 
 def is_trivial(e: ir.Expr) -> bool:
     """Whether an expression costs nothing, so that repeating it is better than naming it."""
-    match e:
-        case ir.Const() | ir.Var():
-            return True
-        case ir.Swizzle() | ir.Member():
-            return True
-        case ir.Unary(op="negate"):
-            return isinstance(e.operand, ir.Const | ir.Var)
-        case ir.Index():
-            return isinstance(e.value, ir.Var) and isinstance(e.index, ir.Var | ir.Const)
-        case ir.Construct() if isinstance(e.type, Array):
-            return False
-        case ir.Construct():
-            return all(isinstance(a, ir.Const) for a in e.args)
-        case _:
-            return False
+    test = _TRIVIAL.get(type(e))
+    return test is not None and test(e)
+
+
+def _always(e: ir.Expr) -> bool:
+    return True
+
+
+def _trivial_sign(e: ir.Unary) -> bool:
+    return e.op == "negate" and isinstance(e.operand, ir.Const | ir.Var)
+
+
+def _trivial_element(e: ir.Index) -> bool:
+    return isinstance(e.value, ir.Var) and isinstance(e.index, ir.Var | ir.Const)
+
+
+def _trivial_vector(e: ir.Construct) -> bool:
+    return not isinstance(e.type, Array) and all(isinstance(a, ir.Const) for a in e.args)
+
+
+_TRIVIAL: dict[type, Callable[[Any], bool]] = {
+    **dict.fromkeys((ir.Const, ir.Var, ir.Swizzle, ir.Member), _always),
+    ir.Unary: _trivial_sign,
+    ir.Index: _trivial_element,
+    ir.Construct: _trivial_vector,
+}
+"""A table, since every value is asked for in every flow; what is not in it costs something."""
 
 
 def _regions(flow: Flow, result: ir.Expr) -> tuple[Region, dict[str, Region], list[tuple[ir.Expr, Region]]]:
