@@ -262,7 +262,9 @@ def test_floats_of_words() -> None:
 
 def test_truncation_keeps_known_numbers_known() -> None:
     x = np.array([2.75, -2.75, 0.5])
-    found = logic.to_integer(context(3), Range(x, x), True)
+    here = context(3)
+    found = logic.to_integer(here, Range(x, x), True)
+    assert logic.floor(here, Range(x, x)).is_point and here.forks == 0
     assert found.is_point and found.low.tolist() == [2, -2, 0] and found.low.dtype == np.int64
     same = logic.to_integer(context(3), Range(x, x + 0.125), True)
     assert same.is_point and same.low.tolist() == [2, -2, 0]
@@ -284,3 +286,6 @@ def test_truncation_of_what_is_beyond_the_type_tells_its_operand() -> None:
         assert pairs(found) == [(-(2**31), 2**31 - 1), (1, 1), (-(2**31), 2**31 - 1)]
     (told,) = here.book.causes
     assert (told.operand, told.reason) == ("x", "outside the integers of the type")
+    here = context(3)
+    found = logic.to_integer(here, Range(x, x, np.array([7, 0, 8], np.int16)), True)
+    assert found.cause is not None and found.cause.tolist() == [7, 0, 8] and here.book.causes == []
