@@ -19,7 +19,7 @@ from codegen.backends import dialect
 from codegen.emit.stmt import StmtPrinter
 from codegen.errors import Place
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, I32, VEC2, VEC3, Field, Struct, array_of
+from codegen.ir.types import BOOL, F32, I32, VEC2, VEC3
 from codegen.ir.verify import verify
 from codegen.passes.analysis.operations import operations
 from codegen.passes.placement.branches import select_is_cheaper
@@ -28,52 +28,33 @@ from codegen.passes.placement.counted import operations_of
 from codegen.passes.placement.dead import pruned, used_parameters
 from codegen.passes.placement.regions import is_trivial, place
 from codegen.passes.placement.schedule import statements
-from codegen.passes.ssa.flow import Branch, Carried, Flow, Item, Loop, Merge, roots
+from codegen.passes.ssa.flow import Branch, Flow, Item, Loop, Merge, roots
 from codegen.passes.ssa.values import FIELD, LOCAL, PARAMETER, Values
+from conformance.unit.support.flows import (
+    ARRAY,
+    ONE,
+    PARAMETERS,
+    TWO,
+    A,
+    N,
+    P,
+    S,
+    V,
+    W,
+    X,
+    Y,
+    Z,
+    branch,
+    chain,
+    leaf,
+    loop,
+    made,
+    plus,
+    root_of,
+)
 from conformance.unit.support.trees import function_of, no_function
 
 GLSL = StmtPrinter(dialect("glsl", None))
-PAIR = Struct("Pair", (Field("first", F32), Field("second", F32)))
-ARRAY = array_of(F32, 2)
-X, Y, Z, P = ir.Var(F32, "x"), ir.Var(F32, "y"), ir.Var(F32, "z"), ir.Var(BOOL, "p")
-V, W, A, S, N = ir.Var(VEC3, "v"), ir.Var(VEC3, "w"), ir.Var(ARRAY, "a"), ir.Var(PAIR, "s"), ir.Var(I32, "n")
-ONE, TWO = ir.Const(F32, 1.0), ir.Const(I32, 2)
-PARAMETERS = {name: name for name in "xyzvwpasn"}
-
-
-def made() -> Values:
-    values = Values(function="f", line=1)
-    values.parameters = {e.name: ir.Parameter(e.name, e.type, None) for e in (X, Y, Z, V, W, P, A, S, N)}
-    for e in (X, Y, Z, V, W, P, A, S, N):
-        values.intern(e)
-    return values
-
-
-def plus(values: Values, *parts: ir.Expr) -> ir.Expr:
-    """A sum from the left: one operation fewer than parts."""
-    total = parts[0]
-    for part in parts[1:]:
-        total = values.binary("+", total, part)
-    return total
-
-
-def chain(values: Values, of: ir.Expr, count: int) -> ir.Expr:
-    """So many operations, one on the other."""
-    for k in range(count):
-        of = values.binary("-" if k % 2 else "*", of, (Y, Z, X)[k % 3])
-    return of
-
-
-def root_of(values: Values, e: ir.Expr) -> ir.Expr:
-    return values.build(ir.Builtin(F32, "sqrt", (e,)))
-
-
-def leaf(values: Values, name: str) -> ir.Var:
-    e = values.intern(ir.Var(F32, name))
-    assert isinstance(e, ir.Var)
-    return e
-
-
 FREE: tuple[ir.Expr, ...] = (
     *(ONE, X, ir.Swizzle(F32, V, "x"), ir.Member(F32, S, "first"), ir.Unary(F32, "negate", X)),
     *(
@@ -97,33 +78,6 @@ def test_what_costs_nothing(e: ir.Expr, trivial: bool) -> None:
     assert is_trivial(e) == trivial
 
 
-Row = tuple[str, ir.Expr, ir.Expr]
-
-
-def loop(
-    values: Values, name: str, body: list[Item], carried: list[Row], limit: ir.Expr | None = None
-) -> Loop:
-    """A loop of 3 iterations, or of up to 5; carried: name, first value, following value."""
-    index = values.intern(ir.Var(I32, f"{name}@"))
-    assert isinstance(index, ir.Var)
-    rows = [
-        Carried(leaf(values, f"{c}@in"), leaf(values, f"{c}@out"), c, start, following)
-        for c, start, following in carried
-    ]
-    return Loop(index, name, 2 if limit is None else 0, 5, limit, body, rows)
-
-
-def branch(
-    values: Values,
-    condition: ir.Expr,
-    merges: list[Row],
-    then: list[Item] | None = None,
-    orelse: list[Item] | None = None,
-) -> Branch:
-    rows = [Merge(leaf(values, f"{name}@merged"), name, a, b) for name, a, b in merges]
-    return Branch(condition, then or [], orelse or [], rows)
-
-
 def text(values: Values, items: list[Item], result: ir.Expr) -> list[str]:
     """The statements; their operations are those that are counted without writing them."""
     flow = Flow(items, result)
@@ -137,8 +91,8 @@ def text(values: Values, items: list[Item], result: ir.Expr) -> list[str]:
     assert {s.name for s in found if isinstance(s, ir.Let) and s.mutable} == assigned
     assert operations_of(values, flow, result.type) == sum(operations(function).values())
     numbers = [s.line for s in found]
-    assert len(set(numbers)) == len(numbers)
-    assert set(origins) <= set(range(11, 11 + 2 * len(numbers)))
+    assert sorted(numbers) == list(range(11, 11 + len(numbers)))
+    assert set(origins) <= set(numbers)
     assert set(origins.values()) <= {("f", 1)}
     return [line.strip() for line in GLSL.block(body, "")]
 
@@ -152,6 +106,11 @@ def test_what_one_side_needs_is_computed_there() -> None:
         "return y_next + x;",
     ]
     values = made()
+    total = plus(values, X, Y)
+    item = branch(values, P, [("t", values.binary("*", total, total), ONE)])
+    assert text(values, [item], leaf(values, "t@merged"))[1:4] == [
+        *("if (p) {", "float sum = x + y;", "t = sum * sum;")
+    ]
     item = branch(values, P, [("t", ONE, root_of(values, X))])
     assert text(values, [item], leaf(values, "t@merged"))[-4:] == [
         *("} else {", "t = sqrt(x);", "}", "return t;")
@@ -259,6 +218,14 @@ def test_truth_values_and_vectors_start_as_false_and_zero() -> None:
     lines = text(values, [item], values.build(ir.Select(VEC3, flag, place_, V)))
     assert lines[:2] == ["bool flag = false;", "vec3 place = vec3(0.0);"]
     assert lines[3:8] == ["flag = x < y;", "place = v;", "} else {", "flag = p;", "place = w;"]
+
+
+def test_values_are_defined_in_the_order_of_their_use() -> None:
+    values = made()
+    one, other = (values.binary("*", e, e) for e in (plus(values, X, Y), values.binary("*", X, Z)))
+    assert text(values, [], values.binary("-", one, other)) == [
+        *("float sum = x + y;", "float scaled = x * z;", "return sum * sum - scaled * scaled;")
+    ]
 
 
 def is_named(values: Values, items: list[Item], result: ir.Expr, e: ir.Expr) -> bool:
