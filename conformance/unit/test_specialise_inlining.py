@@ -20,6 +20,7 @@ import pytest
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.ir import nodes as ir
+from codegen.ir.types import F32
 from codegen.ir.verify import verify
 from codegen.library import Library
 from codegen.passes.inline import MOST_UNROLLED
@@ -208,6 +209,8 @@ def test_what_a_branch_leaves_alone_is_not_assigned(library: Library) -> None:
     assert len(assigned) == 2, "y of the branch and y of the loop"
     assert all(name.startswith("y") for name in assigned)
     assert not [s for s in found.log if "z if" in s.what]
+    found = specialise(library, f"probe_{list(BODIES).index('one of two stays')}", new_name="g", unroll=4)
+    assert [s.name for s in ir.statements(found.function.body) if isinstance(s, ir.Assign)] == ["y"]
 
 
 def test_choices_are_called_like_what_the_source_chooses(tmp_path: Path) -> None:
@@ -272,6 +275,25 @@ def test_fields_of_kept_calls_are_told_by_their_names(tmp_path: Path) -> None:
     assert [s.what for s in found.log][:2] == ["first * 0 -> 0", "second.y * 1 -> second.y"]
     calls = [e for e in ir.expressions(found.function.body) if isinstance(e, ir.Call)]
     assert [c.function for c in calls] == ["h"]
+
+
+def test_kept_calls_take_structs_and_variants(tmp_path: Path) -> None:
+    text = (
+        PAIR + "@helper\ndef one(pair: Pair, x: X) -> f32:\n    return pair.first + pair.second.y * x\n"
+        "@helper\ndef other(pair: Pair, x: X) -> f32:\n    return pair.first - pair.second.x * x\n"
+        "def f(x: X, k: X) -> f32:\n    return one(Pair(x * k, vec3(k)), x + k)\n"
+    )
+    library = library_of(tmp_path, text)
+    found = specialise(library, "f", variants={"one": "other"}, keep={"other"})
+    (call,) = [e for e in ir.expressions(found.function.body) if isinstance(e, ir.Call)]
+    assert call.function == "other"
+    pair, total = call.args
+    assert isinstance(pair, ir.Construct)
+    assert pair.type == library.struct("Pair").type
+    assert total == ir.Binary(F32, "+", ir.Var(F32, "x"), ir.Var(F32, "k"))
+    x = {name: np.linspace(-1.0, 2.0, 20).astype(np.float32) for name in ("x", "k")}
+    special = evaluate(library.with_functions([found.function]), "f_specialised", x)
+    np.testing.assert_array_equal(special, x["x"] * x["k"] - x["k"] * (x["x"] + x["k"]))
 
 
 UNROLLED = """def f(x: X) -> f32:
