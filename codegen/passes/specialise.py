@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from codegen.errors import Place, UserError
@@ -57,10 +57,10 @@ class Specialised:
     source: str
     parameters: Mapping[str, str]
     dropped: tuple[str, ...]
-    constants: Mapping[str, Any] = field(default_factory=dict)
-    aliases: Mapping[str, str] = field(default_factory=dict)
-    log: tuple[Step, ...] = ()
-    whole: bool = False
+    constants: Mapping[str, Any]
+    aliases: Mapping[str, str]
+    log: tuple[Step, ...]
+    whole: bool
 
     def impose(self, inputs: Mapping[str, Any]) -> dict[str, Any]:
         """Inputs of the general function with the constants and aliases put in."""

@@ -245,6 +245,13 @@ def test_facts_hold_beside_constants_to_within_a_rounding(library: Library) -> N
             specialise(library, "f", constants=known, facts=[fact])
 
 
+def test_facts_are_simplified_as_bodies_are(library: Library) -> None:
+    known = {"v": (1.0, 1.0, 1.0), "w": (2.0, 2.0, 2.0)}
+    log = specialise(library, "f", constants=known, facts=[("length(v + w) * x", 0.0, 1.0)]).log
+    steps = [(s.name, s.what) for s in log if s.name in ("fold", "scalars") and "+" in s.what]
+    assert steps[:2] == [("fold", "1 + 2 -> 3"), ("scalars", "vec3(1) + vec3(2) -> vec3(3)")]
+
+
 def test_facts_of_one_expression_meet(library: Library) -> None:
     def told(*facts: tuple[str, float, float]) -> list[str]:
         return [s.what for s in specialise(library, "f", facts=facts).log if s.name == "facts"]
