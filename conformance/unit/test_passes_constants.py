@@ -75,6 +75,8 @@ FOLDED: list[tuple[ir.Expr, tuple[Number, ...]]] = [
     (binary(BOOL, "==", number(1, U32), number(2, U32)), (False,)),
     (binary(BOOL, "and", number(True, BOOL), number(False, BOOL)), (False,)),
     (ir.Convert(F32, number(7, U32)), (7.0,)),
+    (ir.Convert(F32, number(4_000_000_000, U32)), (4_000_000_000.0,)),
+    (ir.Convert(F32, number(0.5)), (0.5,)),
     (ir.Convert(F32, number(-7, I32)), (-7.0,)),
     (ir.Convert(F32, number(16_777_217, I32)), (16_777_216.0,)),
     (ir.Convert(I32, number(4_294_967_289, U32)), (-7,)),

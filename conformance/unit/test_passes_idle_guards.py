@@ -112,6 +112,8 @@ IDLE: dict[str, tuple[str, str]] = {
     "x >= n": ("true", "x in [0.5, 2], n in [-2, -1]"),
     "x >= y": ("false", "x in [0.5, 2], y in [3, 4]"),
     "x == y": ("false", "x in [0.5, 2], y in [3, 4]"),
+    "min(c, e)": ("c", "c in [1, 1], e in [1, 1]"),
+    "max(e, c)": ("e", "e in [1, 1], c in [1, 1]"),
     "c == e": ("true", "c in [1, 1], e in [1, 1]"),
     "c != e": ("false", "c in [1, 1], e in [1, 1]"),
     "x != y": ("true", "x in [0.5, 2], y in [3, 4]"),
