@@ -98,6 +98,33 @@ def test_number_of_a_round_has_the_type_of_its_limit(kind: Type) -> None:
     assert isinstance(found, Whole) and found.is_signed == (kind == I32) and ends(found) == [(1, 1)]
 
 
+@pytest.mark.parametrize("first", [I32, U32])
+def test_rounds_of_two_loops_have_numbers_of_their_own_types(first: Type) -> None:
+    second = U32 if first == I32 else I32
+    body = (
+        ir.Let("t", ir.Var(second, "m")),
+        ir.For("i", 0, 2, (ir.Let("s", ir.Var(first, "i")),), limit=ir.Var(first, "n")),
+        ir.For("k", 0, 2, (ir.Assign("t", ir.Var(second, "k")),), limit=ir.Var(second, "m")),
+        ir.Return(ir.Var(second, "t")),
+    )
+    found = call(body, {"n": wholes(first == I32, (5, 5)), "m": wholes(second == I32, (5, 5))}, 1)
+    assert isinstance(found, Whole) and found.is_signed == (second == I32) and ends(found) == [(1, 1)]
+
+
+def test_unsigned_number_of_a_round_is_the_literal() -> None:
+    """One value, so that x f32(i) - x f32(1u) is 0 in the round of 1."""
+    limit = ir.Var(U32, "n")
+    body = (ir.For("i", 0, 2, (ir.Let("s", ir.Var(U32, "i")),), limit=limit), ir.Return(limit))
+    for literal_first in (False, True):
+        function = ir.Function("probe", "", "base", None, (), U32, body, ir.Doc("", {}), Place("", 1))
+        here = Context(load_table("wgsl"), CauseBook(), 1)
+        frame = Frame(LIBRARY, here, function, {"n": wholes(False, (5, 5))})
+        if literal_first:
+            frame.expr(ir.Const(U32, 1))
+        frame.run()
+        assert frame.scope["i"] is frame.expr(ir.Const(U32, 1))
+
+
 def test_literals_are_one_value_each() -> None:
     context = Context(load_table("wgsl"), CauseBook(), 1)
     function = ir.Function("probe", "", "base", None, (), F32, (), ir.Doc("", {}), Place("", 1))

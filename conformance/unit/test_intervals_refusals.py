@@ -7,10 +7,12 @@ Plan. The table of WGSL with one text in the place of another.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from codegen.errors import UserError
-from codegen.intervals import TABLES, load_table
+from codegen.intervals import TABLES, load_table, tables
 from codegen.intervals.accuracy import Absolute, Exact, Filter, Inherited, Rounded, Row, Scaled, Ulp, Unstated
 from codegen.intervals.tables import FOLDER, FORMULAS, Table, operands, read_table
 
@@ -162,6 +164,52 @@ def test_keys_that_a_row_needs(text: str) -> None:
         reading(text)
     assert str(refused.value).startswith("my.toml: min: ")
     assert sentence in str(refused.value)
+
+
+TWO_AT_ONCE = {
+    ("specification", "edition"): "my.toml: lacks specification, edition",
+    ("rounding", "flush", "fused"): "my.toml: lacks rounding, flush, fused",
+}
+
+
+@pytest.mark.parametrize("keys", TWO_AT_ONCE)
+def test_all_that_lacks_is_told_in_order(keys: tuple[str, ...]) -> None:
+    head, _, rest = TEXT.partition("[settings]")
+    lines = [line for line in head.splitlines(keepends=True) if not line.startswith(keys)]
+    with pytest.raises(UserError) as refused:
+        read_table("wgsl", "my.toml", "".join(lines) + "[settings]" + rest)
+    assert str(refused.value) == TWO_AT_ONCE[keys]
+
+
+def test_all_that_lacks_in_settings_and_rows_is_told_in_order() -> None:
+    head, _, rest = TEXT.partition("[settings]")
+    settings, _, rows = rest.partition("[operations")
+    with pytest.raises(UserError) as refused:
+        read_table("wgsl", "my.toml", head + "[settings]\n\n[operations" + rows)
+    assert settings and str(refused.value) == "my.toml: settings: lacks rounding, flush, fused, association"
+    for row, lacking in (("absolute", "bound, within"), ("filter", "texel, level")):
+        with pytest.raises(UserError) as refused:
+            reading(f'kind = "{row}"')
+        assert str(refused.value) == f"my.toml: min: lacks {lacking}"
+
+
+def test_the_first_of_two_faults_is_told() -> None:
+    with pytest.raises(UserError) as refused:
+        read("flush = true\nfused = true", "flush = 1\nfused = 1")
+    assert str(refused.value) == "my.toml: flush is true or false"
+    with pytest.raises(UserError) as refused:
+        read_row('[operations.min]\nkind = "exact"\ncite = ""\nassumed = ""\n')
+    assert str(refused.value) == "my.toml: min: cite is a sentence"
+
+
+def test_tables_of_the_package_are_told_by_their_path(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "wgsl.toml").write_text("flush = ", encoding="utf-8")
+    monkeypatch.setattr(tables, "FOLDER", tmp_path)
+    with pytest.raises(UserError) as refused:
+        tables.load_table.__wrapped__("wgsl")
+    assert str(refused.value).startswith("codegen/intervals/tables/wgsl.toml: not valid TOML: ")
 
 
 def test_what_a_table_says_of_itself() -> None:
