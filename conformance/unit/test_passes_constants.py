@@ -83,6 +83,8 @@ FOLDED: list[tuple[ir.Expr, tuple[Number, ...]]] = [
     (ir.Convert(U32, number(-7, I32)), (4_294_967_289,)),
     (ir.Convert(U32, number(-0.75)), (0,)),
     (ir.Convert(I32, number(-63.5)), (-63,)),
+    (ir.Convert(I32, number(63.5)), (63,)),
+    (ir.Convert(I32, number(2_147_483_520.0)), (2_147_483_520,)),
     (ir.Convert(U32, number(4_294_967_040.0)), (4_294_967_040,)),
     (ir.Convert(I32, number(-2_147_483_648.0)), (-2_147_483_648,)),
     (binary(F32, "*", number(LARGEST), number(-1.0)), (-LARGEST,)),

@@ -1,8 +1,7 @@
 """Guards one at a time, over ranges that are given: what is idle, what may act, and the proof that is told.
 
-Plan. x in [0.5, 2], y in [3, 4], n in [-2, -1], p in [0, 1], m in [-1, 0], z in [0.25, 3], c and e
-are 1; of f nothing
-is known, of h only that it is not below 1. (Whole functions: test_passes_guards.)
+Plan. x in [0.5, 2], y in [3, 4], n in [-2, -1], p in [0, 1], m in [-1, 0], z in [0.25, 3], g in [-1, 0.5];
+c and e are 1; of f nothing is known, of h and l one end only. (Whole functions: test_passes_guards.)
   idle   every guard in every order of its operands, ends that only touch included
   acts   ranges that overlap, ends that may cross, components of which one is not decided
 """
@@ -25,7 +24,7 @@ from codegen.passes.ssa.values import Values, constant_components
 KNOWN = {
     "x": (0.5, 2.0), "y": (3.0, 4.0), "n": (-2.0, -1.0), "p": (0.0, 1.0), "m": (-1.0, 0.0),
     "z": (0.25, 3.0), "f": (-math.inf, math.inf), "h": (1.0, math.inf), "l": (-math.inf, -1.0),
-    "c": (1.0, 1.0), "e": (1.0, 1.0),
+    "g": (-1.0, 0.5), "c": (1.0, 1.0), "e": (1.0, 1.0),
 }  # fmt: skip
 
 
@@ -141,7 +140,7 @@ ACTS = (
     *("clamp(x, 0.75, 1.0)", "clamp(x, z, 2.0)", "clamp(x, f, 2.0)", "clamp(x, z, 1.0)"),
     *("clamp(x, 5.0, 1.0)", "clamp(y, 5.0, 1.0)", "clamp(y, 5.0, 3.5)", "clamp(x, 0.25, 0.125)"),
     *("clamp(xy, 0.75, 3.5)", "clamp(f, 0.0, 1.0)", "clamp(h, 1.0, 2.0)", "clamp(l, -2.0, -1.0)"),
-    *("abs(f)", "abs(h)", "abs(l)", "abs(xn)", "abs(nx)"),
+    *("abs(f)", "abs(g)", "abs(h)", "abs(l)", "abs(xn)", "abs(nx)"),
     *("x < z", "x <= 1.0", "x > 1.0", "x >= 2.0", "x == 1.0", "x != 1.0", "f < x"),
 )
 

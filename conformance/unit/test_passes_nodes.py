@@ -205,6 +205,17 @@ def test_range_of_one_operation(e: ir.Expr, expected: Sequence[tuple[float, floa
     assert [(b.low, b.high) for b in Ranges(values).bounds(values.rebuild(e))] == list(expected)
 
 
+def test_vector_operations_have_a_range_for_each_component() -> None:
+    values = known()
+    v, w = (values.intern(three(*parts)) for parts in ((X, Y, Z), (Z, X, T)))
+    ranges = Ranges(values)
+    for op, type_, size in (("cross", VEC3, 3), ("normalize", VEC3, 3), ("dot", F32, 1), ("length", F32, 1)):
+        operands = (v, w) if op in ("cross", "dot") else (v,)
+        found = ranges.bounds(values.intern(ir.Builtin(type_, op, operands)))
+        assert len(found) == size
+        assert all(b.low <= b.high for b in found)
+
+
 def test_elements_with_another_number_are_other_values() -> None:
     values = known()
     array = values.intern(ir.Construct(ARRAY, (X, X, X)))
