@@ -24,7 +24,7 @@ from codegen.intervals.interpreter import Frame
 from codegen.intervals.permit import Permitted
 from codegen.intervals.values import Range, Value, Whole, constant
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32, I32, U32, Type, array_of
+from codegen.ir.types import BOOL, F32, I32, U32, Type, array_of
 from codegen.library import load_library
 from conformance.unit.support.sources import library_of
 
@@ -123,6 +123,17 @@ def test_unsigned_number_of_a_round_is_the_literal() -> None:
             frame.expr(ir.Const(U32, 1))
         frame.run()
         assert frame.scope["i"] is frame.expr(ir.Const(U32, 1))
+
+
+def test_truth_values_given_as_inputs() -> None:
+    sure = np.array([True, False, True])
+    chosen = ir.Select(F32, ir.Var(BOOL, "b"), const(2.0), const(5.0))
+    for returns, value, expected in ((BOOL, ir.Var(BOOL, "b"), sure), (F32, chosen, [2.0, 5.0, 2.0])):
+        parameters = (ir.Parameter("b", BOOL, None),)
+        body = (ir.Return(value),)
+        f = ir.Function("told", "", "base", None, parameters, returns, body, ir.Doc("", {}), Place("", 1))
+        found: Any = permitted(LIBRARY.with_functions([f]), "told", {"b": sure}, "wgsl")
+        assert found.low.tolist() == found.high.tolist() == list(expected)
 
 
 def test_literals_are_one_value_each() -> None:

@@ -255,6 +255,10 @@ def test_floats_of_words() -> None:
     with np.errstate(invalid="ignore"):
         found = logic.from_bits(here, wholes(boxes, False, codes))
     assert found.cause is not None and found.cause.tolist() == [9, 0, 9, 1, 1, 0, 1]
+    here = context(1)
+    with np.errstate(invalid="ignore"):
+        found = logic.from_bits(here, wholes([(inf, nan)], False, np.array([9], np.int16)))
+    assert here.book.causes == [] and found.cause is not None and found.cause.tolist() == [9]
     known = np.array([bits(1.5), bits(-2.0), 0], np.int64)
     found = logic.from_bits(context(3), Whole(known, known, False))
     assert found.is_point and found.low.tolist() == [1.5, -2.0, 0.0] and found.cause is None

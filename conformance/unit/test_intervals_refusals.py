@@ -221,6 +221,15 @@ def test_what_a_table_says_of_itself() -> None:
     assert not other.flush and other.fused
 
 
+def test_what_a_promise_leaves_out() -> None:
+    assert Ulp(3.0) == Ulp(3.0, per_abs_x=0.0, whole=False, per_component=0.0)
+    assert Scaled(3.0) == Scaled(3.0, per_component=0.0)
+    assert Absolute(0.5, (0.0, 1.0)) == Absolute(0.5, (0.0, 1.0), elsewhere=None)
+    assert Row(Exact(), "c") == Row(
+        Exact(), "c", magnitude={}, reciprocal=None, zero=(), normal=(), assumed=""
+    )
+
+
 def test_operands_have_the_names_of_the_registry() -> None:
     assert operands("/") == operands("+") == ("x", "y")
     assert operands("atan2") == ("y", "x")
