@@ -276,7 +276,7 @@ SHOWN: dict[str, ir.Expr] = {
     "0.5": ir.Const(F32, 0.5),
     "true": ir.Const(BOOL, True),
     "7": ir.Const(U32, 7),
-    "16777217": ir.Const(U32, 2**24 + 1),
+    "4294967295": ir.Const(U32, 2**32 - 1),
     "-3": ir.Const(I32, -3),
     "x": X,
     "-x": ir.Unary(F32, "negate", X),

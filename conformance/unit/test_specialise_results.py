@@ -194,6 +194,7 @@ def test_lines_lead_to_the_source(library: Library) -> None:
     assert min(lines) > found.place.line
     assert len(set(lines)) == len(lines)
     start = library.function("turns").place.line
+    assert [found.source_of(s.line).line for s in found.body if isinstance(s, ir.Let)] == [start + 3]
     assert {found.source_of(line).line for line in lines} <= set(range(start, start + 5))
 
 
