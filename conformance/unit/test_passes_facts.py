@@ -66,6 +66,7 @@ FACTS: dict[str, tuple[str, Type, tuple[float, float], tuple[float, float]]] = {
     "low end alone": ("x * 0.5", F32, (0.25, math.inf), (0.25 - SLACK, 0.5)),
     "high end alone": ("x * 0.5", F32, (-math.inf, 0.25), (-0.5, 0.25 + SLACK)),
     "of the unknown": ("f * x", F32, (0.5, 2.0), (0.5 - 2 * SLACK, 2.0 + 2 * SLACK)),
+    "a parameter of which nothing is known": ("f", F32, (0.5, 2.0), (0.5 - 2 * SLACK, 2.0 + 2 * SLACK)),
     "half of the unknown": ("f * x", F32, (0.5, math.inf), (-math.inf, math.inf)),
     "touching": ("x * 0.5", F32, (0.5, 2.0), (0.5 - 2.0 * SLACK, 0.5)),
     "vector": ("v * 0.5", VEC3, (0.25, 0.375), (0.25 - SLACK, 0.375 + SLACK)),

@@ -162,8 +162,7 @@ def _rebuilt(
         if total is None:
             total = term if factor > 0 else values.negative(term)
         else:
-            wide = like.type if isinstance(like.type, Vector) else term.type
-            parts = (values.splat(total, wide), values.splat(term, wide))
+            parts = (values.splat(total, like.type), values.splat(term, like.type))
             total = values.binary("+" if factor > 0 else "-", *parts)
     if total is None:
         return values.number(0.0, like.type)
