@@ -22,7 +22,7 @@ class Region:
     parent: Region | None
     is_loop: bool
     items: list[Item]
-    depth: int = 0
+    depth: int
     inner: dict[int, tuple[Region, ...]] = field(default_factory=dict)
 
     def ancestors(self) -> Iterator[Region]:
