@@ -20,7 +20,7 @@ import pytest
 from codegen.errors import UserError
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Finite, Interval, Unit
-from codegen.ir.types import F32, I32, VEC3, array_of
+from codegen.ir.types import F32, I32, UVEC2, VEC3, array_of
 from codegen.library import Library
 from codegen.passes.ssa.values import PARAMETER, Hint, Values, constant_components
 from codegen.passes.subject import Fact, Subject
@@ -195,6 +195,7 @@ def rows(function: ir.Function, tmp_path_factory: pytest.TempPathFactory) -> ir.
             ir.Parameter("x", F32, Finite()),
             ir.Parameter("sky.shares", array_of(F32, 2), Interval(0.0, 1.0)),
             ir.Parameter("lights", array_of(VEC3, 2), Unit()),
+            ir.Parameter("cell", UVEC2, None),
         ),
     )
 
@@ -234,6 +235,7 @@ def test_arrays_of_directions(rows: ir.Function) -> None:
         ("sky.shares", {"0": 0.5}, "g: sky.shares needs 2 elements"),
         ("sky.shares", [0.5, "high"], "g: sky.shares[1]: 'high' is no f32"),
         ("sky.shares", [0.5, 1.5], "g: sky.shares[1] is 1.5, which is not in [0, 1]"),
+        ("cell", (1, -1), "g: cell: (1, -1) is no u32"),
         ("lights", [(1.0, 1.0, 0.0), (0.6, 0.0, 0.8)], "g: lights[0] is (1, 1, 0), which is no unit vector"),
     ],
 )
