@@ -17,7 +17,7 @@ from codegen.emit.dialect import with_precise
 from codegen.emit.module import emit
 from codegen.errors import UserError
 from codegen.ir import nodes as ir
-from codegen.ir.types import F32
+from codegen.ir.types import BOOL, F32
 from codegen.ir.unit import Unit
 from codegen.library import load_library
 from codegen.passes.printing.precise import STEM, name_results
@@ -77,3 +77,15 @@ def test_whole_library_is_valid_and_every_float_local_is_qualified(name: str) ->
 def test_dialect_without_the_qualifier_refuses(target: str, name: str) -> None:
     with pytest.raises(UserError, match="has no precise qualifier"):
         with_precise(dialect(target, name))
+
+
+def test_results_are_named_on_every_side_and_in_loops() -> None:
+    x = ir.Var(F32, "x")
+    computed = ir.Return(ir.Binary(F32, "*", x, x))
+    test = ir.Binary(BOOL, "<", x, x)
+    body = (ir.For("i", 0, 2, (ir.If(test, (computed,), (computed,)),)), computed)
+    function = replace(load_library().function("sin_angle"), body=body)
+    (made,) = name_results(Unit((function,), ())).functions
+    returned = [s.value for s in ir.statements(made.body) if isinstance(s, ir.Return)]
+    assert returned == [ir.Var(F32, STEM)] * 3
+    assert [type(s) for s in made.body] == [ir.For, ir.Let, ir.Return]
