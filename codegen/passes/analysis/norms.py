@@ -24,8 +24,8 @@ PRODUCT = 2.0**-19
 """Of dot and cross, relative to the larger operand's square: OpenCL's (2n - 1) 2^-23 max^2 with room."""
 FLUSHED = 2.0**-120
 """Length that a vector may lose because its components are flushed to 0 below 2^-126."""
-LEAST_SQUARE = 2.0**-123
-"""Smallest guard of a square under which what is flushed cannot make a normalised vector longer than 1."""
+LEAST_SQUARE = 2.0**-106
+"""Smallest guard of a square: two flushed ones, 2^-125 together, lengthen a vector by 2^-20 at most."""
 
 
 class Bounded(Protocol):
@@ -142,7 +142,7 @@ class Lengths:
             a, b = b, a
         if isinstance(a.type, Vector):
             return 0.0, math.inf
-        if op == "*" and _normalises(a, b):
+        if op == "*" and self._normalises(a, b):
             return 0.0, 1.0 + UNIT_SLACK
         (factor,) = self.bounds(a)
         near, far = max(factor.low, -factor.high, 0.0), max(-factor.low, factor.high)
@@ -154,6 +154,19 @@ class Lengths:
         if not (math.isfinite(far) and math.isfinite(most)):
             return 0.0, math.inf
         return _rounded(near * least, far * most)
+
+    def _normalises(self, factor: ir.Expr, x: ir.Expr) -> bool:
+        """Whether a factor is inverse_sqrt(dot(x, x)), or that of a larger square, and none too small."""
+        match factor:
+            case ir.Builtin(op="inverse_sqrt", args=(ir.Builtin(op="max", args=(a, b)),)):
+                guards = [guard for square, guard in ((a, b), (b, a)) if _is_square(square, x)]
+                least = max((bound.low for guard in guards for bound in self.bounds(guard)), default=0.0)
+                is_square = bool(guards)
+            case ir.Builtin(op="inverse_sqrt", args=(a,)):
+                least, is_square = 0.0, _is_square(a, x)
+            case _:
+                return False
+        return is_square and max(least, self.operand(x)[0] ** 2) >= LEAST_SQUARE
 
     def _cross(self, a: ir.Expr, b: ir.Expr) -> float:
         most_a, most_b = self.operand(a)[1], self.operand(b)[1]
@@ -171,19 +184,6 @@ class Lengths:
 def _rounded(least: float, most: float) -> tuple[float, float]:
     """Lengths after one more operation on each component."""
     return max(least * (1.0 - ROUNDING) - FLUSHED, 0.0), most * (1.0 + ROUNDING) + FLUSHED
-
-
-def _normalises(factor: ir.Expr, x: ir.Expr) -> bool:
-    """Whether a factor is inverse_sqrt(dot(x, x)), or that of a larger square."""
-    match factor:
-        case ir.Builtin(op="inverse_sqrt", args=(ir.Builtin(op="max", args=(a, b)),)):
-            guards = [g for g in (a, b) if isinstance(g, ir.Const)]
-            safe = all(float(g.value) >= LEAST_SQUARE for g in guards)
-            return safe and any(_is_square(s, x) for s in (a, b))
-        case ir.Builtin(op="inverse_sqrt", args=(a,)):
-            return _is_square(a, x)
-        case _:
-            return False
 
 
 def _is_square(e: ir.Expr, x: ir.Expr) -> bool:
