@@ -58,6 +58,7 @@ class Group:
     first: tuple[int, int, int]
     second: tuple[int, int, int]
     without: tuple[str, ...] = ()
+    warm: tuple[str, ...] = ()
 
 
 def _group(name: str, data: dict[str, Any]) -> Group:
@@ -82,6 +83,7 @@ def _group(name: str, data: dict[str, Any]) -> Group:
         tuple(data.get("first", (0, 0, 0))),
         tuple(data.get("second", (0, 0, 0))),
         tuple(data.get("without", ())),
+        tuple(data.get("warm", ())),
     )
 
 

@@ -194,6 +194,8 @@ def _try_modules(
 
         def then(warm: Warm, of_these: list[Job] = of_these) -> None:
             ready = prepare(group, list(dict.fromkeys(subject for subject, _ in of_these)), warm)
+            if group.warm and not warm.load(group.warm):
+                raise BaselineError(f"{' '.join(group.warm)} fail without a mutant")
             waiting = (_Running(m, attempt(group, ready[s], m, effort)) for s, m in of_these)
             _try_all(waiting, workers, ends, told)
 

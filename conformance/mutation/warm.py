@@ -24,6 +24,11 @@ class Warm:
 
     session: pytest.Session
 
+    def load(self, beginnings: Sequence[str]) -> bool:
+        """Run the tests whose ids begin so, for what they load that forks then share; whether they pass."""
+        chosen = [item for item in self.session.items if item.nodeid.startswith(tuple(beginnings))]
+        return self._passes(chosen)
+
     def run(self, chosen: Sequence[str], swap: Swap) -> int:
         """Run the chosen tests with functions changed, to the first failure; pytest's exit status.
 
@@ -31,12 +36,15 @@ class Warm:
         """
         swap.put()
         items = {item.nodeid: item for item in self.session.items}
-        queue = [items[name] for name in chosen if name in items]
+        passes = self._passes([items[name] for name in chosen if name in items])
+        return int(pytest.ExitCode.OK if passes else pytest.ExitCode.TESTS_FAILED)
+
+    def _passes(self, queue: Sequence[pytest.Item]) -> bool:
         for item, following in zip(queue, [*queue[1:], None], strict=True):
             item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
             if self.session.testsfailed:
-                return int(pytest.ExitCode.TESTS_FAILED)
-        return int(pytest.ExitCode.OK)
+                return False
+        return True
 
 
 class _InPlaceOfTests:
