@@ -22,6 +22,7 @@ from codegen.intervals.accuracy import Absolute, Accuracy, Row, Ulp, Unstated
 from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
 from codegen.intervals.values import Range
+from conformance.unit.support.tolerances import tolerance
 
 INF = math.inf
 
@@ -135,12 +136,12 @@ def test_logarithms(name: str, bound: float) -> None:
         touches = b >= 0.5 and a <= 2.0
         least = near[0] if inside else min(near[0], far[0]) if touches else far[0]
         most = near[1] if inside else max(near[1], far[1]) if touches else far[1]
-        assert (found.low[k], found.high[k]) == pytest.approx((least, most), abs=1.5e-7)
+        assert (found.low[k], found.high[k]) == pytest.approx((least, most), abs=tolerance("ends_of_curves"))
         if not touches:
             assert (found.low[k], found.high[k]) == far
     alone = elementary.logarithm(context(8, name, Absolute(bound, (0.5, 2.0))), name, boxes(*ends))
-    assert alone.low[3] == pytest.approx(function(3.0) - bound, abs=1e-6)
-    assert alone.high[2] == pytest.approx(function(0.4) + bound, abs=1e-6)
+    assert alone.low[3] == pytest.approx(function(3.0) - bound, abs=tolerance("ends_beside_a_promise"))
+    assert alone.high[2] == pytest.approx(function(0.4) + bound, abs=tolerance("ends_beside_a_promise"))
     few = elementary.logarithm(context(1, name, Ulp(ulps)), name, boxes((2.0, 3.0)))
     assert pairs(few) == within([(function(2.0), function(3.0))], ulps)
     here = context(3)
@@ -168,11 +169,13 @@ def test_waves(name: str) -> None:
         extremes = [(n + 0.5) * math.pi - shift for n in range(first, last + 1)]
         values = np.sin(np.concatenate([at, extremes]) + shift)
         least, most = within([(values.min(), values.max())], 4.0)[0]
-        assert (found.low[k], found.high[k]) == pytest.approx((least, most), abs=2e-7)
+        assert (found.low[k], found.high[k]) == pytest.approx((least, most), abs=tolerance("ends_of_curves"))
     known = np.array([0.1, 2.0])
     function = math.sin if name == "sin" else math.cos
     found = elementary.sine(context(2, name, Ulp(4.0)), name, Range(known, known))
-    assert pairs(found) == pytest.approx(np.array(within([(function(x),) * 2 for x in known], 4.0)), abs=2e-7)
+    assert pairs(found) == pytest.approx(
+        np.array(within([(function(x),) * 2 for x in known], 4.0)), abs=tolerance("ends_of_curves")
+    )
 
 
 @pytest.mark.parametrize("name", ["sin", "cos"])
@@ -184,7 +187,9 @@ def test_waves_within_an_interval_only(name: str) -> None:
     assert causes(found, here) == ["", "", bad, bad, ""]
     function = math.sin if name == "sin" else math.cos
     ends = sorted((function(0.1), function(0.2)))
-    assert pairs(found)[4] == pytest.approx((ends[0] - 0.25, ends[1] + 0.25), abs=1e-6)
+    assert pairs(found)[4] == pytest.approx(
+        (ends[0] - 0.25, ends[1] + 0.25), abs=tolerance("ends_beside_a_promise")
+    )
 
 
 def test_places_that_float64_cannot_tell() -> None:

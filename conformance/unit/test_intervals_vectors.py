@@ -28,6 +28,7 @@ from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
 from codegen.intervals.tables import FORMULAS, Table
 from codegen.intervals.values import Range
+from conformance.unit.support.tolerances import tolerance
 
 SEED = 20_266
 EPSILON = Fraction(1, 2**23)
@@ -96,13 +97,18 @@ def context(table: Table | str) -> Context:
     return Context(load_table(table) if isinstance(table, str) else table, CauseBook(), LANES)
 
 
+def within(steps: int) -> float:
+    """Relative distance of so many floats, the least there is between two, and a quarter of one more."""
+    return (steps + 0.25) * 2.0**-24
+
+
 def assert_ends(found: Range, expected: list[Ends], steps: int = 0) -> None:
     """The ends, or so many floats further out: for what float64 may lose on the way."""
     assert found.cause is None
     for lane, (low, high) in enumerate(expected):
         a, b = float(directed(low, False)), float(directed(high, True))
         assert (float(found.low[lane]), float(found.high[lane])) == pytest.approx(
-            (a, b), rel=(steps + 0.25) * 2.0**-24, abs=0.0
+            (a, b), rel=within(steps), abs=0.0
         ), lane
         assert not steps or (found.low[lane] <= b and found.high[lane] >= a)
 
@@ -283,7 +289,7 @@ def test_components_are_cut_where_the_length_does_not_vanish(formula: str) -> No
     assert found[0].cause is None
     assert found[0].low[:3].tolist() == [found[0].low[0], -MOST, -MOST] and found[0].low[0] > 0.0
     assert found[0].high[:3].tolist() == [MOST, found[0].high[1], MOST] and found[0].high[1] < 0.0
-    assert abs(found[0].low[3] - 1.0 / math.hypot(1.0, 0.25)) < 1e-5
+    assert found[0].low[3] == pytest.approx(1.0 / math.hypot(1.0, 0.25), abs=tolerance("normalised_by_table"))
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

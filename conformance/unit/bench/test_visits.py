@@ -38,6 +38,7 @@ from conformance.bench.visits import (
 )
 from conformance.bench.worker import Job
 from conformance.commands.report import say_agreement, visited_once
+from conformance.unit.support.tolerances import tolerance
 
 SEED = 20_264
 COUNT = VISIT.rounds
@@ -64,7 +65,7 @@ def test_rounds_come_to_one_level() -> None:
     for name, value in net.items():
         above = found[name] - found[BASELINE]
         assert above.max() < 1.1 * above.min(), "one level"
-        assert np.median(above / found[BASELINE]) == pytest.approx(value, rel=0.03)
+        assert np.median(above / found[BASELINE]) == pytest.approx(value, rel=tolerance("noisy_level"))
     ratio = np.asarray(slow["a"]) / np.asarray(slow["b"])
     assert found["a"] / found["b"] == pytest.approx(ratio), "ratios within a round stay"
 
@@ -73,7 +74,7 @@ def test_a_later_visit_of_some_members_comes_to_the_same_level() -> None:
     first, second = rounds({"a": 1.0, "b": 1.3, "c": 5.0}), rounds({"a": 1.0, "c": 5.0})
     quick = {name: [0.4 * t for t in times] for name, times in second.items()}
     levels = [np.median(visit["a"]) for visit in steady([first, quick])]
-    assert levels[0] == pytest.approx(levels[1], rel=0.02)
+    assert levels[0] == pytest.approx(levels[1], rel=tolerance("noisy_level"))
 
 
 @pytest.mark.parametrize(
@@ -122,7 +123,7 @@ def test_a_pair_is_seen_in_the_visits_that_timed_it() -> None:
     visits = steady([rounds({"a": 1.0, "b": 1.2, "c": 9.0}), rounds({"a": 1.0, "c": 9.0})])
     assert len(seen(visits, "a", "b")) == 1
     assert len(seen(visits, "a", "c")) == 2
-    assert seen(visits, "a", "b")[0].middle == pytest.approx(-0.2, abs=0.02)
+    assert seen(visits, "a", "b")[0].middle == pytest.approx(-0.2, abs=tolerance("noisy_level"))
 
 
 def test_only_close_members_are_timed_again() -> None:
@@ -141,9 +142,9 @@ def test_figures_of_several_visits() -> None:
     found = timing(visits, "a")
     b = found.members["b"]
     assert b.ratio is not None
-    assert b.ratio.median == pytest.approx(0.9, abs=0.01)
+    assert b.ratio.median == pytest.approx(0.9, abs=tolerance("quiet_level"))
     assert b.ratio.low < 0.82 and b.ratio.high > 1.18, "the quartiles show the spread between visits"
-    assert b.by_visit == pytest.approx((0.8, 0.9, 1.2), abs=0.01)
+    assert b.by_visit == pytest.approx((0.8, 0.9, 1.2), abs=tolerance("quiet_level"))
     assert found.undecided == [("a", "b")]
 
 
@@ -203,7 +204,9 @@ def test_visits_go_on_where_the_order_is_open() -> None:
         BASELINE: 3,
     }
     assert [f["error"] for f in found["functions"]] == [1, 1, 1]
-    assert found["functions"][2]["speed"]["throughput"]["ratio"] == pytest.approx(4.0, rel=0.05)
+    assert found["functions"][2]["speed"]["throughput"]["ratio"] == pytest.approx(
+        4.0, rel=tolerance("noisy_level")
+    )
 
 
 def test_a_single_visit_leaves_close_pairs_open() -> None:
