@@ -16,7 +16,7 @@ from codegen.factors.source import draw_samples
 from codegen.factors.waterloo import read_waterloo, waterloo_files
 from codegen.files import write_folder
 from codegen.library import load_library
-from codegen.maps.image import exr
+from codegen.maps.undated import undated_exr
 from codegen.version import VERSION
 
 FRESH = 40_000
@@ -100,9 +100,9 @@ def files(factors: Factors, measured: FitError | None, name: str, kind: str) -> 
     """The files that are written, by name."""
     if kind == "waterloo":
         return waterloo_files(name, "factors", factors)
-    images = {"p.exr": exr(factors.p), "q.exr": exr(factors.q)}
+    images = {"p.exr": undated_exr(factors.p), "q.exr": undated_exr(factors.q)}
     if factors.r is not None:
-        images["r.exr"] = exr(factors.r)
+        images["r.exr"] = undated_exr(factors.r)
     angles = factors.angles if factors.r is not None else ""
     manifest = {
         "schema": 2,

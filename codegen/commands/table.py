@@ -12,7 +12,7 @@ from codegen.commands.factor import numbers
 from codegen.errors import UserError
 from codegen.files import write_folder
 from codegen.library import load_library
-from codegen.maps.image import exr
+from codegen.maps.undated import undated_exr
 from codegen.tables.arguments import two_arguments
 from codegen.tables.tabulate import LARGEST, Table, tabulate
 from codegen.version import VERSION
@@ -76,4 +76,7 @@ def files(function: str, held: dict[str, float], budget: float, table: Table) ->
         "budget": budget,
         "error": float(f"{table.error:.4g}"),
     }
-    return {"table.exr": exr(table.values), "table.json": (json.dumps(manifest, indent=1) + "\n").encode()}
+    return {
+        "table.exr": undated_exr(table.values),
+        "table.json": (json.dumps(manifest, indent=1) + "\n").encode(),
+    }

@@ -15,8 +15,9 @@ import numpy.typing as npt
 from codegen.errors import UserError, unknown
 from codegen.ir.domains import number
 from codegen.maps import latlong, mipmap, octahedral, paraboloid, prefilter
-from codegen.maps.image import Pixels, exr
+from codegen.maps.image import Pixels
 from codegen.maps.radiance import read_radiance
+from codegen.maps.undated import undated_exr
 from codegen.version import VERSION
 
 Array = npt.NDArray[np.float64]
@@ -61,7 +62,7 @@ class Prepared:
     def files(self) -> dict[str, bytes]:
         """The files of the folder, by name."""
         text = json.dumps(self.manifest, indent=1) + "\n"
-        return {name: exr(image) for name, image in self.images.items()} | {"env.json": text.encode()}
+        return {name: undated_exr(image) for name, image in self.images.items()} | {"env.json": text.encode()}
 
 
 def check(settings: Settings) -> None:

@@ -16,6 +16,7 @@ from codegen.maps import latlong, mipmap, octahedral, paraboloid, prefilter
 from codegen.maps.image import exr, read_pixels
 from codegen.maps.image import png as as_png
 from codegen.maps.radiance import read_radiance
+from codegen.maps.undated import WRITTEN, undated_exr
 
 DATA = Path(__file__).parents[2] / "examples" / "data"
 ROUNDING = 1e-12
@@ -72,6 +73,18 @@ def test_integers_are_decoded_only_where_light_is_wanted(tmp_path: Path) -> None
     assert read_pixels(path)[0, 0, 0] == np.float32(188 / 255)
     linear = ((188 / 255 + 0.055) / 1.055) ** 2.4
     assert abs(read_pixels(path, linear=True)[0, 0, 1] - linear) <= FLOAT32
+
+
+def test_files_do_not_tell_when_they_were_written(tmp_path: Path) -> None:
+    """OpenImageIO writes the second; two runs then differed wherever a second passed between them."""
+    pixels = np.random.default_rng(5).random((3, 5, 3)).astype(np.float32)
+    dated, undated = exr(pixels), undated_exr(pixels)
+    assert undated.count(WRITTEN) == 1 and WRITTEN not in dated
+    assert len(undated) == len(dated)
+    places = [k for k in range(len(dated)) if dated[k] != undated[k]]
+    assert undated.index(WRITTEN) <= places[0] and places[-1] < undated.index(WRITTEN) + len(WRITTEN)
+    (tmp_path / "a.exr").write_bytes(undated)
+    assert (read_pixels(tmp_path / "a.exr") == pixels).all()
 
 
 def test_a_header_that_is_no_text_gets_a_sentence(tmp_path: Path) -> None:
