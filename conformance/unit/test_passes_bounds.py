@@ -11,13 +11,16 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 from codegen.errors import UserError
 from codegen.intervals.numbers import LARGEST
+from codegen.intervals.values import Range
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Domain, Finite, Interval, Length, Unit
 from codegen.ir.types import BOOL, F32, I32, U32, UVEC2, VEC2, VEC3, Scalar, Type, Vector, array_of
+from codegen.passes.analysis import ranges
 from codegen.passes.analysis.norms import Lengths
 from codegen.passes.analysis.ranges import Bounds, Ranges
 from codegen.passes.rules.scalars import components
@@ -65,6 +68,15 @@ def test_parameter_lies_in_its_domain_and_no_more(name: str) -> None:
             assert bound.low <= low
             assert bound.high >= high
             assert bound.finite == math.isfinite(low)
+
+
+def test_what_is_negated() -> None:
+    values = Values(parameters={"x": ir.Parameter("x", F32, Interval(0.25, 2.0))})
+    x = values.intern(ir.Var(F32, "x"))
+    assert Ranges(values).bounds(values.build(ir.Unary(F32, "negate", x))) == (Bounds(-2.0, -0.25),)
+    low, high, nothing = np.array([1.0]), np.array([2.0]), np.array([0])
+    assert ranges._ends(Range(low, high, nothing)) == (1.0, 2.0)
+    assert ranges._ends(Range(low, high, nothing + 1)) == OPEN
 
 
 def test_numbers_of_a_loop_and_of_calls() -> None:

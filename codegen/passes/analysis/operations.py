@@ -103,7 +103,7 @@ def number_of_operations(e: ir.Expr) -> int:
     """Operations of one node, its operands left out, whatever their class."""
     if isinstance(e, _OPERATIONS):
         return _number(e.op, isinstance(e, ir.Builtin), _width(e))
-    return sum(expression_operations(e).values()) if isinstance(e, ir.Select) else 0
+    return sum(expression_operations(e).values())
 
 
 @functools.cache
