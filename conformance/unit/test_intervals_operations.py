@@ -23,7 +23,7 @@ import pytest
 
 from codegen.evaluate import evaluate
 from codegen.intervals import load_table, numbers, permit, permitted, whole
-from codegen.intervals.threads import VARIABLE
+from codegen.intervals.threads import threads
 from codegen.intervals.values import Whole
 from conformance.unit.support.sources import library_of
 from conformance.unit.support.tolerances import tolerance
@@ -258,13 +258,22 @@ def test_chunks_at_a_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     x = np.linspace(-1.0, 1.0, 999, dtype=np.float32)
     monkeypatch.setattr(permit, "CHUNK", 100)
     found = []
-    for threads in (1, 3):
-        monkeypatch.setenv(VARIABLE, str(threads))
+    for count in (1, 3):
+        monkeypatch.setenv("VAIR_INTERVAL_THREADS", str(count))
         found.append(permitted(library, "probe", {"x": x}, "wgsl"))
     one, three = found
     assert one.causes == three.causes and len(one.causes) > 0
     for name in ("low", "high", "codes"):
         assert np.array_equal(getattr(one, name), getattr(three, name), equal_nan=True)
+
+
+def test_the_environment_sets_the_number_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the name that codegen/README.md gives; else one or two, as there are processors."""
+    monkeypatch.delenv("VAIR_INTERVAL_THREADS", raising=False)
+    assert threads() in (1, 2)
+    for told in ("1", "7"):
+        monkeypatch.setenv("VAIR_INTERVAL_THREADS", told)
+        assert threads() == int(told)
 
 
 WIDE = """def probe(x: X, y: X) -> vec3:
