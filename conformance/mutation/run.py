@@ -24,9 +24,9 @@ from conformance.mutation.isolated import (
     dependants,
 )
 from conformance.mutation.plan import Group, Subject, change_of, excuse, mutants_of
-from conformance.mutation.seen import Seen
+from conformance.mutation.seen import Seen, within
 from conformance.mutation.sites import Mutant
-from conformance.mutation.swapped import Alive, Swap, within
+from conformance.mutation.swapped import Alive, Swap
 from conformance.mutation.warm import Warm, collected
 
 SEED = 20_260

@@ -13,6 +13,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import accumulate
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -151,3 +152,8 @@ def functions_around(text: str, line: int) -> list[tuple[int, int]]:
             if ends[0] <= line <= ends[1]:
                 found.append(ends)
     return sorted(found)
+
+
+def within(seconds: Sequence[float], budget: float) -> int:
+    """How many of some tests fit into so many seconds, one at least."""
+    return max(1, sum(total <= budget for total in accumulate(seconds)))

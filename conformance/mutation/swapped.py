@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import gc
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType, FunctionType
@@ -86,15 +86,3 @@ def _outside(code: CodeType) -> list[Any]:
     constants = [c if not isinstance(c, CodeType) else _place(c) for c in code.co_consts]
     own = (code.co_code, code.co_names, code.co_varnames, repr(constants))
     return [own, *(_outside(part) for part in _parts(code) if _is_body(part))]
-
-
-def within(seconds: Sequence[float], budget: float) -> int:
-    """How many of some tests fit into so many seconds, one at least."""
-    return max(1, sum(1 for total in _sums(seconds) if total <= budget))
-
-
-def _sums(values: Sequence[float]) -> Iterator[float]:
-    total = 0.0
-    for value in values:
-        total += value
-        yield total

@@ -22,9 +22,9 @@ from conformance.mutation import table_rules
 from conformance.mutation.record import FILE_COLUMNS, draw_of
 from conformance.mutation.report import overview
 from conformance.mutation.run import Result
-from conformance.mutation.seen import Seen, Watch, function_around
+from conformance.mutation.seen import Seen, Watch, function_around, within
 from conformance.mutation.sites import Mutant
-from conformance.mutation.swapped import Alive, within
+from conformance.mutation.swapped import Alive
 
 pytest_plugins = ["pytester"]
 
