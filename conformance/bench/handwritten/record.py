@@ -10,6 +10,7 @@ from typing import Any
 
 from codegen.files import write_text
 from conformance.bench.handwritten.beside import BY_HAND, FIXED, Row
+from conformance.bench.record import rounded
 from conformance.marked import with_part
 
 FOLDER = Path(__file__).parent
@@ -18,24 +19,16 @@ BEGIN, END = (
     "<!-- results: written by python -m conformance.bench.handwritten --record -->",
     "<!-- end of results -->",
 )
-DIGITS = 4
 NAMES = {BY_HAND: "by hand", FIXED: "by hand, constants typed in"}
 
 
 def as_data(about: Mapping[str, Any], found: Mapping[str, tuple[str, Sequence[Row]]]) -> dict[str, Any]:
     """The measurement as data: by target the driver and a row for each function."""
     targets = {
-        target: {"driver": driver, "functions": [_rounded(row) for row in rows]}
+        target: {"driver": driver, "functions": [rounded(asdict(row)) for row in rows]}
         for target, (driver, rows) in found.items()
     }
     return {**about, "targets": targets}
-
-
-def _rounded(row: Row) -> dict[str, Any]:
-    return {
-        key: float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
-        for key, value in asdict(row).items()
-    }
 
 
 def read() -> dict[str, Any]:
