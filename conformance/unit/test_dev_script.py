@@ -10,10 +10,12 @@ only the programs named, so nothing is installed and nothing outside the copy is
   a foreign .venv   is never removed
   no package index  is told apart from a broken pin, and leaves an unfinished .venv that is rebuilt
   interrupted       gives the .venv that worked before back
+  report            takes the example scenes that are specialised; a quick one takes none
   three.js          is fetched once for the tests (a stub of npm); without npm or network they run without
 """
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -221,6 +223,22 @@ def test_tests_run_where_npm_cannot_fetch(set_up: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     assert "npm error code ECONNREFUSED\n  Its test is skipped; the next run tries again.\n" in done.stdout
     assert "Tests:" in done.stdout
+
+
+def test_report_shows_the_scenes_that_are_specialised(set_up: Path) -> None:
+    """Those of the folder that examples/scenes/README.md names, and no scenes that are pictures."""
+    scenes = "examples/scenes/specialised"
+    shutil.copytree(ROOT / scenes, set_up / scenes)
+    (set_up / "examples/scenes/a-picture.toml").touch()
+    calls = set_up / "calls"
+    provide(set_up / ".venv/bin/python", f'case "$1" in -ISc) echo key ;; *) echo "$@" >> "{calls}" ;; esac')
+    for options in ([], ["--quick"]):
+        assert dev(set_up, "report", *options, VAIR_SYSTEM="skip").returncode == 0
+    whole, quick = calls.read_text().splitlines()
+    names = sorted(path.name for path in (ROOT / scenes).glob("*.toml"))
+    assert len(names) == 4
+    assert re.findall(r"--scene (\S+)", whole) == [f"{scenes}/{name}" for name in names]
+    assert quick == "-m codegen.cli report -o build/report --quick"
 
 
 def test_it_is_quick_and_offline_once_set_up() -> None:
