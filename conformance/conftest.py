@@ -1,9 +1,32 @@
-"""Fixtures for tests that need a device."""
+"""Fixtures for tests that need a device; and what all test runs share."""
+
+import gc
+from collections.abc import Generator
 
 import pytest
 
 from conformance.unit.support.drivers import need
 from targets import TARGETS, TargetUnavailable, TimedRuntime, open_runtime, probe
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Collect without looking for garbage, and never look at what was collected.
+
+    Thousands of tests and the modules behind them stay to the end; searching them again and again for circles
+    that nobody holds takes a good part of a run.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
+
+
+def pytest_unconfigure() -> None:
+    """Give everything back at the end: libraries that count their objects report those that are still there."""
+    gc.unfreeze()
 
 
 @pytest.fixture(scope="session", params=TARGETS)

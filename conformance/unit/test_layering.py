@@ -15,7 +15,7 @@ imports itself through others, not even late, inside a function.
 import ast
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
@@ -62,20 +62,25 @@ def is_type_checking(node: ast.AST) -> bool:
     return isinstance(node, ast.If) and ast.unparse(node.test) in {"TYPE_CHECKING", "typing.TYPE_CHECKING"}
 
 
-def walk(node: ast.AST, at_import: bool = True) -> Iterator[tuple[ast.AST, bool]]:
-    """Every node below, with whether it runs when the file is imported."""
-    for child in ast.iter_child_nodes(node):
-        deferred = isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)) or is_type_checking(
-            child
-        )
+BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
+
+
+def statements(node: ast.AST, at_import: bool = True) -> Iterator[tuple[ast.AST, bool]]:
+    """Every statement below, with whether it runs when the file is imported."""
+    for child in (child for block in BLOCKS for child in getattr(node, block, ())):
         yield child, at_import
-        yield from walk(child, at_import and not deferred)
+        deferred = isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef)) or is_type_checking(child)
+        yield from statements(child, at_import and not deferred)
+
+
+def parsed(path: str) -> ast.Module:
+    return ast.parse((ROOT / path).read_text(encoding="utf-8"), path)
 
 
 @cache
 def imports(path: str) -> list[Import]:
     found = []
-    for node, at_import in walk(ast.parse((ROOT / path).read_text(encoding="utf-8"), path)):
+    for node, at_import in statements(parsed(path)):
         if isinstance(node, ast.Import):
             found += [Import(alias.name, node.lineno, at_import) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
@@ -85,83 +90,91 @@ def imports(path: str) -> list[Import]:
     return found
 
 
-def refuse(path: str, bad: list[Import], rule: str) -> None:
-    lines = "\n".join(f"  {path}:{item.line} imports {item.name}" for item in bad)
-    assert not bad, f"{rule}\n{lines}"
+@cache
+def files_of(*folders: str) -> tuple[str, ...]:
+    return tuple(path for folder in folders for path in files_under(folder))
 
 
-@pytest.mark.parametrize("path", files_under("shaderlib"))
-def test_shaderlib_imports_only_shaderlib(path: str) -> None:
-    allowed = {"shaderlib", "typing", "__future__"}
-    if path == "shaderlib/lang.py":
-        allowed |= {"collections", "dataclasses"}
-    refuse(path, [item for item in imports(path) if item.package not in allowed], "shaderlib is only parsed")
+def refuse(rule: str, paths: Iterable[str], is_bad: Callable[[str, Import], bool]) -> None:
+    """Fail with every import of the files that is_bad(path, import) names."""
+    bad = [(path, item) for path in paths for item in imports(path) if is_bad(path, item)]
+    assert not bad, f"{rule}\n" + "\n".join(f"  {path}:{item.line} imports {item.name}" for path, item in bad)
 
 
-@pytest.mark.parametrize("path", files_under("codegen"))
-def test_codegen_imports_nothing_above_it(path: str) -> None:
+def test_shaderlib_imports_only_shaderlib() -> None:
+    def is_bad(path: str, item: Import) -> bool:
+        allowed = {"shaderlib", "typing", "__future__"}
+        if path == "shaderlib/lang.py":
+            allowed |= {"collections", "dataclasses"}
+        return item.package not in allowed
+
+    refuse("shaderlib is only parsed", files_of("shaderlib"), is_bad)
+
+
+def test_codegen_imports_nothing_above_it() -> None:
     above = {"shaderlib", "targets", "conformance", "examples"} | GPU_PACKAGES
-    refuse(path, [item for item in imports(path) if item.package in above], "codegen knows no target")
+    refuse("codegen knows no target", files_of("codegen"), lambda _, item: item.package in above)
 
 
-@pytest.mark.parametrize(
-    "path", [path for path in files_under("codegen") if not path.startswith(COMPOSITION_ROOT)]
-)
-def test_only_the_command_line_loads_targets_by_name(path: str) -> None:
-    tree = ast.parse((ROOT / path).read_text(encoding="utf-8"), path)
+def test_only_the_command_line_loads_targets_by_name() -> None:
     bad = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in LOADERS:
-            bad.append(f"  {path}:{node.lineno} {ast.unparse(node)}")
-        elif (
-            isinstance(node, ast.Constant)
-            and isinstance(node.value, str)
-            and MODULE_NAME.fullmatch(node.value)
-        ):
-            bad.append(f"  {path}:{node.lineno} names the module {node.value}")
+    for path in files_of("codegen"):
+        if path.startswith(COMPOSITION_ROOT):
+            continue
+        for node in ast.walk(parsed(path)):
+            if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in LOADERS:
+                bad.append(f"  {path}:{node.lineno} {ast.unparse(node)}")
+            elif (
+                isinstance(node, ast.Constant)
+                and isinstance(node.value, str)
+                and MODULE_NAME.fullmatch(node.value)
+            ):
+                bad.append(f"  {path}:{node.lineno} names the module {node.value}")
     assert not bad, "only codegen/cli.py and codegen/commands load by name\n" + "\n".join(bad)
 
 
-@pytest.mark.parametrize("path", files_under("targets"))
-def test_targets_see_text_and_arrays_only(path: str) -> None:
-    above = {"shaderlib", "conformance", "examples"}
-    if not Path(path).name.startswith("dialect"):
-        above |= {"codegen"}
-    refuse(path, [item for item in imports(path) if item.package in above], "a runtime sees text and arrays")
+def test_targets_see_text_and_arrays_only() -> None:
+    def is_bad(path: str, item: Import) -> bool:
+        above = {"shaderlib", "conformance", "examples"}
+        if not Path(path).name.startswith("dialect"):
+            above |= {"codegen"}
+        return item.package in above
+
+    refuse("a runtime sees text and arrays", files_of("targets"), is_bad)
 
 
-@pytest.mark.parametrize("path", files_under("targets"))
-def test_no_target_imports_another(path: str) -> None:
-    folder = Path(path).parts[1]
-    others = TARGETS - {folder} if folder in TARGETS else set()
-    bad = [item for item in imports(path) if item.package == "targets" and item.name.split(".")[1] in others]
-    refuse(path, bad, "no target imports another")
+def test_no_target_imports_another() -> None:
+    def is_bad(path: str, item: Import) -> bool:
+        folder = Path(path).parts[1]
+        others = TARGETS - {folder} if folder in TARGETS else set()
+        return item.package == "targets" and item.name.split(".")[1] in others
+
+    refuse("no target imports another", files_of("targets"), is_bad)
 
 
-@pytest.mark.parametrize("path", files_under("conformance/reference"))
-def test_references_share_nothing_with_the_project(path: str) -> None:
+def test_references_share_nothing_with_the_project() -> None:
     allowed = {"numpy", "scipy", "mpmath"} | sys.stdlib_module_names
-    bad = [
-        item
-        for item in imports(path)
-        if item.package not in allowed and not item.name.startswith("conformance.reference")
-    ]
-    refuse(path, bad, "a reference is written from the paper, with numpy, scipy and mpmath only")
-
-
-@pytest.mark.parametrize(
-    "path", [path for folder in sorted(PROJECT - {"conformance"}) for path in files_under(folder)]
-)
-def test_nothing_imports_conformance(path: str) -> None:
     refuse(
-        path, [item for item in imports(path) if item.package == "conformance"], "nothing imports conformance"
+        "a reference is written from the paper, with numpy, scipy and mpmath only",
+        files_of("conformance/reference"),
+        lambda _, item: item.package not in allowed and not item.name.startswith("conformance.reference"),
     )
 
 
-@pytest.mark.parametrize("path", [path for folder in sorted(PROJECT) for path in files_under(folder)])
-def test_gpu_packages_are_imported_where_a_device_is_opened(path: str) -> None:
-    bad = [item for item in imports(path) if item.package in GPU_PACKAGES and item.at_import]
-    refuse(path, bad, "importing a module must not need a driver; import the GPU package inside the function")
+def test_nothing_imports_conformance() -> None:
+    refuse(
+        "nothing imports conformance",
+        files_of(*sorted(PROJECT - {"conformance"})),
+        lambda _, item: item.package == "conformance",
+    )
+
+
+def test_gpu_packages_are_imported_where_a_device_is_opened() -> None:
+    refuse(
+        "importing a module must not need a driver; import the GPU package inside the function",
+        files_of(*sorted(PROJECT)),
+        lambda _, item: item.package in GPU_PACKAGES and item.at_import,
+    )
 
 
 def file_of(name: str) -> str | None:
@@ -173,7 +186,7 @@ def file_of(name: str) -> str | None:
 
 def test_no_circle_of_imports() -> None:
     graph: dict[str, set[str]] = {}
-    for path in (path for folder in sorted(PROJECT) for path in files_under(folder)):
+    for path in files_of(*sorted(PROJECT)):
         names = {item.name for item in imports(path) if item.package in PROJECT}
         found = {file_of(name) or file_of(name.rpartition(".")[0]) for name in names}
         graph[path] = {file for file in found if file is not None} - {path}
