@@ -25,7 +25,7 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 def pytest_unconfigure() -> None:
-    """Give everything back at the end: libraries that count their objects report those that are still there."""
+    """Give everything back at the end: some libraries count their objects and report what is left."""
     gc.unfreeze()
 
 
