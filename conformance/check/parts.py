@@ -1,7 +1,7 @@
-"""Library functions that no public function reaches: parts of pictures, beside their formulas in float64.
+"""Library functions that public functions do not show: parts of pictures, beside their formulas in float64.
 
 `vair check` looks at public functions and at what these call. What only hosts put together is held to its
-documented formula here.
+documented formula here, and so is what a caller hides: by a limit of its own, or by no promise there.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ SLOPE = 1e-6
 """Step along the height in which a curve is followed."""
 SHORT = 0.05
 """Vectors and ways below this have a direction that a step says too little of."""
-NEAR = {"shell_tangent": 1e-4}
-"""Distance from the formula; a difference quotient stands for a derivative."""
+NEAR = {"shell_tangent": 1e-4, "across_share": 1e-8}
+"""Distance from the formula: of a derivative from a difference quotient, of a fitted polynomial from its angle."""
 USUAL = 1e-9
 
 
@@ -76,7 +76,22 @@ def _unit(v: Array) -> Array:
     return np.asarray(np.where(length > SHORT, v / np.maximum(length, SHORT), np.nan))
 
 
-PARTS: Mapping[str, Formula] = {
+def _across_share(x: Mapping[str, Any]) -> Array:
+    y, z = x["w"][:, 1] + 0.0, x["w"][:, 2] + 0.0  # no negative zeros
+    return np.asarray(np.clip(np.arctan2(y, z) / np.pi + 0.5, 0.0, 1.0))
+
+
+def _ggx_visible_area(x: Mapping[str, Any]) -> Array:
+    across = np.hypot(x["alpha_x"] * x["w"][:, 0], x["alpha_y"] * x["w"][:, 1])
+    return np.asarray(x["w"][:, 2] + np.hypot(across, x["w"][:, 2]))
+
+
+HIDDEN: Mapping[str, Formula] = {
+    "across_share": _across_share,
+    "ggx_visible_area": _ggx_visible_area,
+}
+"""Function that is called -> its formula."""
+ALONE: Mapping[str, Formula] = {
     "thinned": _thinned,
     "coat_shadow": _coat_shadow,
     "fin_alpha": _fin_alpha,
@@ -84,8 +99,8 @@ PARTS: Mapping[str, Formula] = {
     "fin_strand_mask": _fin_strand_mask,
     "shell_tangent": _shell_tangent,
 }
-"""Function -> its formula; NaN where it says nothing."""
-
+"""Function that no other calls -> its formula; NaN where it says nothing."""
+PARTS: Mapping[str, Formula] = {**ALONE, **HIDDEN}
 
 UP, ALONG, NONE = np.array([[0.0, 0.0, 1.0]]), np.array([[0.0, 1.0, 0.0]]), np.zeros((1, 3))
 DEGENERATE: Mapping[str, tuple[tuple[dict[str, Array], Array], ...]] = {

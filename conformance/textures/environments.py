@@ -85,6 +85,17 @@ def parameters(names: tuple[str, ...], count: int, seed: int) -> dict[str, npt.N
     return {name: values.astype(np.float32) for name, values in drawn.items()}
 
 
+BROAD = {"exponent": (1.0, 4.0), "alpha": (0.3, 1.0), "spread": (0.5, 1.5), "specular": (0.2, 0.8)}
+"""Ranges of parameters for which lobes cover most of what they can."""
+
+
+def broad_parameters(names: tuple[str, ...], count: int, seed: int) -> dict[str, npt.NDArray[np.float32]]:
+    """Values of a lobe's parameters by name that make it broad."""
+    rng = np.random.Generator(np.random.PCG64(seed))
+    ends = {name: next(e for key, e in BROAD.items() if name.startswith(key)) for name in names}
+    return {name: rng.uniform(*e, count).astype(np.float32) for name, e in ends.items()}
+
+
 CORNERS = {
     "exponent": (0.0, 0.5, 1.0, 1e5),
     "alpha": (1e-4, 1e-3, 1.0),

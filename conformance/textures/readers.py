@@ -20,13 +20,15 @@ from codegen.tables.tabulate import made
 from conformance.check.features import applies
 from conformance.reference import ambiguous, reference_for
 from conformance.reference.lobes import LOBES
-from conformance.textures.environments import SIZES, looks, paraboloid, parameters, views
+from conformance.textures.environments import SIZES, broad_parameters, looks, paraboloid, parameters, views
 from conformance.textures.maps import chain, full_chain
 
 Array = npt.NDArray[Any]
 SEED = 20260807
 LOOKS = 600
 LANES = 40
+MANY = (17, 31, 40)
+"""Numbers of samples for lobes of which every sample shows something; 17 and 31 just miss another row."""
 DIRECTIONS = 2000
 SHADES = ("factored_shade", "factored_strand_shade", "factored_satin_shade")
 TABLE_SIZE = 256
@@ -43,6 +45,14 @@ def estimator_inputs(name: str, kind: str, size: int = 32) -> dict[str, Any]:
     shaded: dict[str, Any] = views(LANES, SEED)
     own = parameters(lobe_parameters(name), LANES, SEED)
     return {"env": paraboloid(size, kind, SEED), **shaded, **own}
+
+
+def broad_inputs(name: str) -> dict[str, Any]:
+    """A map and views for an estimator whose lobe is so broad that no sample misses it."""
+    found = estimator_inputs(name, "random")
+    rng = np.random.default_rng(SEED)
+    own = broad_parameters(lobe_parameters(name), LANES, SEED)
+    return {**found, **own, "samples": rng.choice(MANY, LANES).astype(np.uint32)}
 
 
 def factors(name: str) -> dict[str, Any]:
@@ -98,6 +108,7 @@ def inputs_for(name: str) -> Iterator[dict[str, Any]]:
     elif name.startswith("env_"):
         for kind in ("random", "hot"):
             yield estimator_inputs(name, kind)
+        yield broad_inputs(name)
     else:
         raise KeyError(name)
 
