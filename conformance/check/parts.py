@@ -25,7 +25,7 @@ SLOPE = 1e-6
 SHORT = 0.05
 """Vectors and ways below this have a direction that a step says too little of."""
 NEAR = {"shell_tangent": 1e-4, "across_share": 1e-8}
-"""Distance from the formula: of a derivative from a difference quotient, of a fitted polynomial from its angle."""
+"""Distance from the formula: of a derivative from a difference quotient, of an angle from a polynomial."""
 USUAL = 1e-9
 
 
