@@ -1,9 +1,13 @@
-"""Values as arrays: scalars (N,), vectors (N, size), structs as dicts; and the arithmetics over them."""
+"""Values as arrays: scalars (N,), vectors (N, size), structs as dicts; and the arithmetics over them.
+
+What is the same in all lanes may have one lane. In loops that are evaluated all at once, iterations come
+before lanes: (iterations, N), (iterations, N, size); what is the same in all iterations has lanes alone.
+"""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, cast
@@ -13,6 +17,7 @@ import numpy.typing as npt
 
 from codegen.errors import UserError, check_names, unknown
 from codegen.evaluate.textures import as_map, lookup_in, size_in, texture_map
+from codegen.evaluate.vectors import stacked
 from codegen.ir.types import (
     BOOL,
     F16,
@@ -71,13 +76,6 @@ def _bits_to_float(x: Array) -> Array:
     return np.asarray(x, np.uint32).view(np.float32)
 
 
-def stacked(columns: Sequence[Array], axis: int = -1) -> Array:
-    """Vectors from their components (N,), component after component in memory: operations of numpy then run
-    along the lanes, three to four times as fast as along a vector."""
-    assert axis == -1
-    return np.array(columns).T
-
-
 def _numpy_namespace(floats: type[np.generic]) -> SimpleNamespace:
     def to_float(x: Array) -> Array:
         return _bits_to_float(x).astype(floats)
@@ -116,11 +114,17 @@ def arithmetic(name: str) -> Arithmetic:
 
 
 def convert_inputs(
-    parameters: Mapping[str, Type], inputs: Mapping[str, Any], arithmetic: Arithmetic, function: str
+    parameters: Mapping[str, Type],
+    inputs: Mapping[str, Any],
+    arithmetic: Arithmetic,
+    function: str,
+    *,
+    repeated: bool = True,
 ) -> tuple[dict[str, Value], int]:
-    """Inputs as arrays of the arithmetic, and their common length N; single values are repeated.
+    """Inputs as arrays of the arithmetic, and their common length N.
 
-    Raises UserError for missing or unknown names and for shapes that do not fit.
+    repeated  whether single values are repeated for all lanes
+    raises    UserError for missing or unknown names and for shapes that do not fit
     """
     check_names(inputs, parameters, parameters, f"{function} has no parameter", f"{function} needs")
     arrays = {n: _convert(f"{function}: {n}", t, inputs[n], arithmetic) for n, t in parameters.items()}
@@ -129,7 +133,7 @@ def convert_inputs(
     if len(counts) > 1:
         raise UserError(f"{function}: inputs have different lengths: {sorted(lengths)}")
     count = counts.pop() if counts else 1
-    return {n: broadcast(value, count) for n, value in arrays.items()}, count
+    return {n: broadcast(value, count) for n, value in arrays.items()} if repeated else arrays, count
 
 
 def _convert(where: str, type_: Type, given: Any, arithmetic: Arithmetic) -> Value:
@@ -212,12 +216,13 @@ def row_by_row(value: Value) -> Value:
     return np.ascontiguousarray(value)
 
 
-def choose(condition: Array, if_true: Value, if_false: Value) -> Value:
-    """Lane by lane choice between two values of one shape."""
+def choose(condition: Array, if_true: Value, if_false: Value, type_: Type) -> Value:
+    """Lane by lane choice between two values of one type."""
     if isinstance(if_true, dict):
         assert isinstance(if_false, dict)
-        return {n: choose(condition, v, if_false[n]) for n, v in if_true.items()}
+        assert isinstance(type_, Struct)
+        return {f.name: choose(condition, if_true[f.name], if_false[f.name], f.type) for f in type_.fields}
     assert isinstance(if_true, np.ndarray)
     assert isinstance(if_false, np.ndarray)
-    wide = condition[:, None] if if_true.ndim == 2 else condition
+    wide = condition[..., None] if isinstance(type_, Vector) else condition
     return np.where(wide, if_true, if_false)

@@ -21,16 +21,16 @@ from codegen.evaluate.arrays import (
     choose,
     convert_inputs,
     row_by_row,
-    stacked,
 )
 from codegen.evaluate.arrays import arithmetic as find_arithmetic
 from codegen.evaluate.blocks import block_by_block
-from codegen.evaluate.loops import Together, joined, lanes, together
+from codegen.evaluate.loops import Together, row, rows, together
 from codegen.evaluate.memory import Memory
 from codegen.evaluate.textures import as_map
+from codegen.evaluate.vectors import stacked
 from codegen.half import half_rules
 from codegen.ir import nodes as ir
-from codegen.ir.types import F16, F32, I32, U32, Scalar, Struct, Type, Vector, element_of
+from codegen.ir.types import F16, F32, I32, TEXTURE, U32, Scalar, Struct, Type, Vector, element_of
 from codegen.library import Library
 from codegen.ops import BUILTINS, OPERATORS
 from codegen.passes.half import SMALLEST_NORMAL, HalfRules, half_versions
@@ -63,13 +63,14 @@ def evaluate(
         find = {v.function.name: v.function for v in versions}.__getitem__
     function = find(name)
     if memory is None:
-        arrays, count = convert_inputs({p.name: p.type for p in function.parameters}, inputs, chosen, name)
+        types = {p.name: p.type for p in function.parameters}
+        arrays, count = convert_inputs(types, inputs, chosen, name, repeated=False)
     else:
         arrays, count = memory.inputs(function, inputs, chosen)
     arrays = with_edges(function, arrays)
 
     def run(some: dict[str, Value], lanes: int) -> Value:
-        return Frame(find, chosen, function, some, lanes, memory).run()
+        return broadcast(Frame(find, chosen, function, some, lanes, memory).run(), lanes)
 
     with np.errstate(all="ignore"):  # lanes that a branch does not take may overflow or divide by zero
         whole = memory is not None or chosen.floats is np.object_
@@ -87,24 +88,18 @@ def with_edges(function: ir.Function, arrays: dict[str, Value]) -> dict[str, Val
     return found
 
 
-@functools.lru_cache(256)
-def _filled(kind: np.dtype[Any], value: float | int | bool, count: int) -> Array:
-    """A constant in every lane; not to be written to."""
-    filled = np.full(count, value, kind)
-    filled.setflags(write=False)
-    return filled
-
-
-@functools.lru_cache(256)
-def _alike(kind: np.dtype[Any], value: int, count: int) -> Array:
-    """A whole number in every lane, stored once; the same object for the same number."""
-    return np.broadcast_to(kind.type(value), (count,))
+@functools.lru_cache(1024)
+def _alike(kind: np.dtype[Any], value: float | int | bool) -> Array:
+    """A number that is the same in all lanes; the same object for the same number, not to be written to."""
+    one = np.full(1, value, kind)
+    one.setflags(write=False)
+    return one
 
 
 @functools.lru_cache(16)
-def _numbered(start: int, stop: int, count: int) -> Array:
-    """The numbers of a loop's iterations, each in so many lanes; not to be written to."""
-    numbers = np.repeat(np.arange(start, stop, dtype=np.int32), count)
+def _numbered(start: int, stop: int) -> Array:
+    """The numbers of a loop's iterations, one a row; not to be written to."""
+    numbers = np.arange(start, stop, dtype=np.int32)[:, None]
     numbers.setflags(write=False)
     return numbers
 
@@ -113,7 +108,8 @@ class Frame:
     """One call: its locals, which lanes still run, and what has been returned so far."""
 
     takes_loops_apart = True
-    """Whether loops may be evaluated all iterations at once, in other expressions than the function's own."""
+    """Whether loops may be evaluated all iterations at once, in other expressions than the function's own;
+    not where values have rows already."""
 
     def __init__(
         self,
@@ -148,7 +144,7 @@ class Frame:
                 case ir.Assign():
                     value, live = self.whole(s.value), self.live(active)
                     if live is not None and not live.all():
-                        value = choose(live, value, self.scope[s.name])
+                        value = choose(live, value, self.scope[s.name], s.value.type)
                     self.scope[s.name] = value
                 case ir.If():
                     condition = self.array(s.condition)
@@ -159,8 +155,10 @@ class Frame:
                 case ir.Return():
                     value, live = self.whole(s.value), self.live(active)
                     if live is None:
-                        live = np.ones(self.count, np.bool_)
-                    self.result = value if self.result is None else choose(live, value, self.result)
+                        live = _alike(np.dtype(np.bool_), True)
+                    if self.result is not None:
+                        value = choose(live, value, self.result, s.value.type)
+                    self.result = value
                     self.returned = live if self.returned is None else self.returned | live
 
     def live(self, active: Array | None) -> Array | None:
@@ -177,38 +175,39 @@ class Frame:
             return
         if s.limit is None:
             for i in range(s.start, s.stop):
-                self.scope[s.name] = _alike(np.dtype(np.int32), i, self.count)
+                self.scope[s.name] = _alike(np.dtype(np.int32), i)
                 self.block(s.body, active)
             return
         limit, live = self.array(s.limit), self.live(active)
-        most = int((limit if live is None else limit[live]).max(initial=0))
+        most = int((limit if live is None else np.where(live, limit, 0)).max(initial=0))
         for i in range(s.start, min(s.stop, most)):
-            self.scope[s.name] = _alike(limit.dtype, i, self.count)
+            self.scope[s.name] = _alike(limit.dtype, i)
             self.block(s.body, limit > i if active is None else active & (limit > i))
 
     def iterations(self, s: ir.For, apart: Together) -> None:
         """All iterations of a loop at once, then what each hands to the next."""
-        steps, count = range(s.start, s.stop), self.count
-        scope = {name: self.joined([self.scope[name]] * len(steps)) for name in apart.outer}
+        steps = range(s.start, s.stop)
+        scope = {name: self.scope[name] for name in apart.outer}
         for name, array in apart.elements.items():
             value = self.scope[array]
             assert isinstance(value, dict)
-            scope[name] = self.joined([value.get(str(i), value["0"]) for i in steps])
-        scope[s.name] = _numbered(s.start, s.stop, count)
-        inner = Frame(self.find, self.arithmetic, self.function, scope, count * len(steps), self.memory)
+            scope[name] = self.rows([value.get(str(i), value["0"]) for i in steps])
+        scope[s.name] = _numbered(s.start, s.stop)
+        inner = Frame(self.find, self.arithmetic, self.function, scope, self.count, self.memory)
+        inner.takes_loops_apart = False
         inner.block(apart.lets, None)
         for k, i in enumerate(steps):
-            self.scope[s.name] = _alike(np.dtype(np.int32), i, count)
-            for name in apart.inner:
-                self.scope[name] = lanes(inner.scope[name], k * count, (k + 1) * count)
+            self.scope[s.name] = _alike(np.dtype(np.int32), i)
+            for name, type_ in apart.inner.items():
+                self.scope[name] = row(inner.scope[name], k, type_)
             for end in apart.ends:
                 self.scope[end.name] = self.expr(end.value)
 
-    def joined(self, values: list[Value]) -> Value:
-        """The lanes of several values, one after the other; remembered where there is a memory."""
+    def rows(self, values: list[Value]) -> Value:
+        """The values of the iterations as rows of one; remembered where there is a memory."""
         if self.memory is None:
-            return joined(values)
-        return self.memory.value("lanes", values, lambda: joined(values))
+            return rows(values)
+        return self.memory.value("rows", values, lambda: rows(values))
 
     def whole(self, e: ir.Expr) -> Value:
         """The value of a statement's expression or of an argument; remembered where there is a memory."""
@@ -250,15 +249,18 @@ class Frame:
 
     def binary(self, e: ir.Binary) -> Array:
         a, b = self.array(e.left), self.array(e.right)
-        if a.ndim != b.ndim:
-            a, b = (a[:, None], b) if a.ndim < b.ndim else (a, b[:, None])
+        if e.left.type is not e.right.type:
+            wide = isinstance(e.left.type, Vector), isinstance(e.right.type, Vector)
+            if wide[0] != wide[1]:
+                a, b = (a, b[..., None]) if wide[0] else (a[..., None], b)
         return self.fit(e.type, OPERATORS[e.op].meaning(self.arithmetic.namespace, a, b))
 
     def builtin(self, e: ir.Builtin) -> Value:
         args = [self.expr(a) for a in e.args]
-        found = self.fit(e.type, BUILTINS[e.op].meaning(self.arithmetic.namespace, *args))
-        # What only a map tells has one lane.
-        return broadcast(found, self.count) if len(found) != self.count else found
+        meaning = BUILTINS[e.op].meaning
+        if e.args[0].type == TEXTURE and len(args) > 1:
+            return self.fit(e.type, _looked_up(functools.partial(meaning, self.arithmetic.namespace), *args))
+        return self.fit(e.type, meaning(self.arithmetic.namespace, *args))
 
     def made_or_called(self, e: ir.Call) -> Value:
         return self.made[id(e)] if id(e) in self.made else self.call(e)
@@ -269,33 +271,31 @@ class Frame:
         return value[e.name]
 
     def index(self, e: ir.Index) -> Value:
-        return self.element(self.expr(e.value), self.array(e.index))
+        return self.element(self.expr(e.value), self.array(e.index), e.type)
 
     def swizzle(self, e: ir.Swizzle) -> Array:
         columns = ["xyzw".index(c) for c in e.components]
         a = self.array(e.value)
-        return a[:, columns[0]] if len(columns) == 1 else a[:, columns]
+        return a[..., columns[0]] if len(columns) == 1 else stacked([a[..., k] for k in columns])
 
     def select(self, e: ir.Select) -> Value:
-        return choose(self.array(e.condition), self.expr(e.if_true), self.expr(e.if_false))
+        return choose(self.array(e.condition), self.expr(e.if_true), self.expr(e.if_false), e.type)
 
-    def element(self, value: Value, index: Array) -> Value:
+    def element(self, value: Value, index: Array, type_: Type) -> Value:
         """The elements of an array that the lanes' numbers name."""
         assert isinstance(value, dict)
-        if index.strides == (0,):  # one number for all lanes, as in a loop
-            return value.get(str(int(index[0])), value["0"])
+        if index.size == 1:  # one number for all lanes, as in a loop
+            return value.get(str(int(index.item())), value["0"])
         found = value["0"]
         for k in range(1, len(value)):
-            found = choose(index == k, value[str(k)], found)
+            found = choose(index == k, value[str(k)], found, type_)
         return found
 
     def constant(self, e: ir.Const) -> Array:
         assert isinstance(e.type, Scalar)
         kind = self.arithmetic.dtype(e.type)
         value = self.arithmetic.literal(e.value) if kind is self.arithmetic.floats else e.value
-        if kind is np.object_:
-            return np.full(self.count, value, object)
-        return _filled(np.dtype(kind), value, self.count)
+        return np.full(1, value, object) if kind is np.object_ else _alike(np.dtype(kind), value)
 
     def fit(self, type_: Type, value: Any) -> Array:
         """The value in the arithmetic's own dtype: numpy widens in places (comparisons of mpmath numbers)."""
@@ -319,7 +319,9 @@ class Frame:
 
     def inner(self, function: ir.Function, inputs: dict[str, Value]) -> Frame:
         """The frame of a call."""
-        return Frame(self.find, self.arithmetic, function, inputs, self.count, self.memory)
+        frame = Frame(self.find, self.arithmetic, function, inputs, self.count, self.memory)
+        frame.takes_loops_apart = self.takes_loops_apart
+        return frame
 
     def construct(self, e: ir.Construct) -> Value:
         type_, parts = e.type, [self.expr(a) for a in e.args]
@@ -327,9 +329,10 @@ class Frame:
             return {f.name: part for f, part in zip(type_.fields, parts, strict=True)}
         assert isinstance(type_, Vector)
         columns: list[Array] = []
-        for part in parts:
+        for a, part in zip(e.args, parts, strict=True):
             assert isinstance(part, np.ndarray)
-            columns += [part] if part.ndim == 1 else [part[:, k] for k in range(part.shape[1])]
+            wide = isinstance(a.type, Vector)
+            columns += [part[..., k] for k in range(part.shape[-1])] if wide else [part]
         if len(columns) == 1:
             columns *= type_.size
         return stacked(columns)
@@ -340,15 +343,32 @@ class Frame:
             return self.fit(type_, value)
         assert isinstance(type_, Scalar)
         if type_ == F32 and self.arithmetic.name == "mpmath":
-            return np.asarray([self.arithmetic.literal(int(x)) for x in value], dtype=object)
+            return np.asarray(_each(lambda x: self.arithmetic.literal(int(x)), value), dtype=object)
         if value.dtype == object:
-            whole = [int(x) if abs(x) < math.inf else 0 for x in value]
             low = -(2**31) if type_ == I32 else 0
-            clipped = [min(max(x, low), low + 2**32 - 1) for x in whole]  # lanes that a branch does not take
-            return np.asarray(clipped, np.int64).astype(self.arithmetic.dtype(type_))
+
+            def clipped(x: Any) -> int:  # lanes that a branch does not take
+                return min(max(int(x) if abs(x) < math.inf else 0, low), low + 2**32 - 1)
+
+            return _each(clipped, value).astype(np.int64).astype(self.arithmetic.dtype(type_))
         if type_ == U32 and value.dtype.kind == "f":
             return value.astype(np.float64).astype(np.int64).astype(np.uint32)
         return self.fit(type_, value)
+
+
+def _each(change: Callable[[Any], Any], value: Array) -> Array:
+    """A function of Python's numbers on every lane."""
+    found: Array = np.frompyfunc(change, 1, 1)(value)
+    return found
+
+
+def _looked_up(lookup: Callable[..., Array], texture: Value, *place: Value) -> Array:
+    """A lookup in a map at (u, v), and at a level if there is one: it takes its lanes in one row."""
+    uv, *level = cast(list[Array], place)
+    shape = np.broadcast_shapes(uv.shape[:-1], *(a.shape for a in level))
+    flat = [np.broadcast_to(a, shape).reshape(-1) for a in level]
+    found = lookup(texture, np.broadcast_to(uv, (*shape, 2)).reshape(-1, 2), *flat)
+    return found.reshape(*shape, found.shape[-1])
 
 
 _EVALUATE: dict[type, Callable[[Frame, Any], Value]] = {

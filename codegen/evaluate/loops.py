@@ -1,10 +1,11 @@
 """Loops whose iterations hardly depend on each other, evaluated all at once: lanes times iterations.
 
 before   for i in range(8): a = f(x, p[i]); total = total + g(a)
-after    a = f(x, p) and part = g(a) over eight times the lanes; then total = total + part, one by one
+after    a = f(x, p) and part = g(a) over arrays of eight rows; then total = total + part, row by row
 
 Every operation is the same on every lane, so values are the same to the bit. What an interpreter spends on
-each operation is spent once, not once an iteration.
+each operation is spent once, not once an iteration; what all iterations share has no rows, and is computed
+once.
 """
 
 from __future__ import annotations
@@ -18,8 +19,10 @@ import numpy as np
 
 from codegen.evaluate.arrays import Array, Value
 from codegen.evaluate.textures import as_map
+from codegen.evaluate.vectors import stacked
 from codegen.ir import nodes as ir
 from codegen.ir.content import variables
+from codegen.ir.types import Struct, Type, Vector
 
 
 @dataclass(frozen=True)
@@ -30,14 +33,14 @@ class Together:
     ends      what one iteration hands to the next, over names of `lets`
     elements  name -> array of which it is the element that the iteration names
     outer     names that `lets` take from around the loop
-    inner     names of `lets` that `ends` use
+    inner     names of `lets` that `ends` use, with their types
     """
 
     lets: tuple[ir.Let, ...]
     ends: tuple[ir.Assign, ...]
     elements: Mapping[str, str]
     outer: tuple[str, ...]
-    inner: tuple[str, ...]
+    inner: Mapping[str, Type]
 
 
 @functools.lru_cache(512)
@@ -78,12 +81,13 @@ def together(s: ir.For) -> Together | None:
             ends.append(ir.Assign(x.name, part(value)))
     made = {x.name for x in lets} | set(elements)
     needed = {name for x in lets for name in _names(x.value)}
+    used = {v.name: v.type for x in ends for v in ir.walk(x.value) if isinstance(v, ir.Var)}
     return Together(
         tuple(lets),
         tuple(ends),
         elements,
         tuple(sorted(needed - made - {s.name})),
-        tuple(sorted({name for x in ends for name in _names(x.value)} & made)),
+        {name: used[name] for name in sorted(used) if name in made},
     )
 
 
@@ -112,6 +116,33 @@ def _names(e: ir.Expr) -> frozenset[str]:
     return frozenset(variables(e))
 
 
+def rows(values: list[Value]) -> Value:
+    """The values of the iterations as rows of one; a map stays what it is."""
+    first = values[0]
+    if as_map(first) is not None:
+        return first
+    if isinstance(first, dict):
+        return {n: rows([cast(dict[str, Value], v)[n] for v in values]) for n in first}
+    assert isinstance(first, np.ndarray)
+    arrays = cast(list[Array], values)
+    if first.ndim == 1:
+        return np.stack(np.broadcast_arrays(*arrays))
+    return stacked([np.stack(np.broadcast_arrays(*[a[:, k] for a in arrays])) for k in range(first.shape[1])])
+
+
+def row(value: Value, number: int, type_: Type) -> Value:
+    """The value of one iteration; that of all of them where they share it."""
+    if as_map(value) is not None:
+        return value
+    if isinstance(value, dict):
+        assert isinstance(type_, Struct)
+        return {f.name: row(value[f.name], number, f.type) for f in type_.fields}
+    if value.ndim == 1 + isinstance(type_, Vector):
+        return value
+    found: Array = value[number if len(value) > 1 else 0]
+    return found
+
+
 def joined(values: list[Value]) -> Value:
     """The lanes of several values, one after the other; a map stays what it is."""
     first = values[0]
@@ -123,9 +154,9 @@ def joined(values: list[Value]) -> Value:
 
 
 def lanes(value: Value, first: int, last: int) -> Value:
-    """Some lanes of a value."""
+    """Some lanes of a value; the one that stands for all stays."""
     if as_map(value) is not None:
         return value
     if isinstance(value, dict):
         return {n: lanes(v, first, last) for n, v in value.items()}
-    return value[first:last]
+    return value if len(value) == 1 else value[first:last]

@@ -60,7 +60,7 @@ class Memory:
         keys = {p.name: (p.name, p.type, id(given.get(p.name))) for p in function.parameters}
         if set(given) != set(keys) or any(key not in self._inputs for key in keys.values()):
             types = {p.name: p.type for p in function.parameters}
-            arrays, count = convert_inputs(types, given, arithmetic, function.name)
+            arrays, count = convert_inputs(types, given, arithmetic, function.name, repeated=False)
             for name, value in arrays.items():
                 self._inputs.setdefault(keys[name], (value, given[name], count))
         found = {name: self._inputs[key] for name, key in keys.items()}

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.evaluate.textures import lookup_in, size_in
+from codegen.evaluate.vectors import stacked
 
 Array = npt.NDArray[Any]
 
@@ -50,7 +51,7 @@ def namespace() -> SimpleNamespace:
         sin=each(mpmath.sin),
         cos=each(mpmath.cos),
         arctan2=each(mpmath.atan2, 2),
-        stack=np.stack,
+        stack=stacked,
         lookup_level=lookup_in(np.object_, each(mpmath.floor), mpmath.mpf),
         texture_size=size_in(np.object_, mpmath.mpf),
         logical_and=np.logical_and,

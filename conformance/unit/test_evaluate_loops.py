@@ -3,7 +3,7 @@
 Plan.
   scene   a general function with two loops over arrays of lights, with a memory and without
   forms   sums, products, a number of the iteration, a value that is carried and used, a branch inside, an
-          assigned local: whatever is taken apart and whatever is not
+          assigned local, what is the same in every iteration, a call: whatever is taken apart and what is not
   apart   which of these loops are taken apart
 """
 
@@ -35,12 +35,30 @@ FORMS = {
     "product": ("total = (total + x) * (f32(i) - y)", True),
     "carried": ("a = sin(total)\n        total = a + x", False),
     "branch": ("if x > f32(i):\n            total = total + y", False),
+    "shared": ("a = sin(y)\n        total = total + a * f32(i) + cos(y)", True),
+    "call": ("total = total + term(x * f32(i), y, vec3(x, y, 1.0)) * term(y, x, vec3(f32(i)))", True),
 }
 """A loop's body, and whether it is taken apart."""
 
 
+CALLED = """@helper
+def term(a: X, b: X, v: V) -> f32:
+    if a < 1.0:
+        return b
+    total = dot(v.zyx, vec3(a, v.xy))
+    for k in range(3):
+        total = total * v.y + f32(k)
+    if b > a:
+        total = total - a
+    return total if a > 3.0 else cross(v, vec3(b)).z
+
+
+"""
+"""A function with branches, an early return, a loop and vectors, some of them the same in every iteration."""
+
+
 def source(body: str) -> str:
-    return (
+    return CALLED + (
         "def probe(x: X, y: X) -> f32:\n    total = 1.0\n    other = y\n"
         f"    for i in range(2, 7):\n        {body}\n    return total + 0.5 * other\n"
     )
