@@ -1,20 +1,20 @@
 """Lobes on every target: value, density and sampler belong together, and obey physics.
 
-Plan. For each lobe setting of scene_statistics.toml, on the device in float32: integral      the density
-integrates to 1 over the sphere, for every view (quadrature in a chart of the lobe) samples       at least 1e6
-samples a test follow the density: chi-square, Sidak's correction over all tests weights       value l.z / pdf
-finite and below the documented largest weight, also for the corners of u furnace       the estimator meets
-the albedo of the float64 reference; albedo <= 1 where the model claims it reciprocity   value(l, v) =
-value(v, l) agreement     lobe sampling, cosine sampling and their balance heuristic find the same reflected
-radiance Seeds are fixed and printed. Left to test_functions: the error of each function against its
-reference.
+Plan. For each lobe setting of scene_statistics.toml, on the device in float32, at some views or (nightly) all:
+  integral     the density integrates to 1 over the sphere, by quadrature in a chart of the lobe
+  samples      at least 1e6 samples a test follow the density: chi-square, Sidak's correction over all tests
+  weights      value l.z / pdf finite and below the documented largest weight, also for the corners of u
+  furnace      the estimator meets the albedo of the float64 reference; albedo <= 1 where the model claims it
+  reciprocity  value(l, v) = value(v, l)
+  agreement    lobe sampling, cosine sampling and their balance heuristic find the same reflected radiance
+Seeds are fixed and printed. Left to test_functions: the error of each function against its reference.
 """
 
 from __future__ import annotations
 
 import itertools
 import tomllib
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -65,6 +65,20 @@ def views() -> list[Array]:
     return [rounded_unit(view(polar, azimuth)) for polar, azimuth in CHECKS["views"]]
 
 
+def some_views(index: int) -> list[int]:
+    """Numbers of the views that a setting gets in a normal run; neighbouring settings get others."""
+    return [(index + k * CHECKS["view_step"]) % len(CHECKS["views"]) for k in range(CHECKS["few_views"])]
+
+
+def all_views(index: int) -> list[int]:
+    """The numbers of all views."""
+    return list(range(len(CHECKS["views"])))
+
+
+VIEWS = [pytest.param(some_views, id="some"), pytest.param(all_views, id="all", marks=pytest.mark.nightly)]
+"""Which views of a setting are tried: index of the setting -> their numbers."""
+
+
 def lobe(row: list[Any], call: Call) -> LobeEvaluator:
     """The lobe of a setting."""
     return lobe_evaluator(call, row[0], dict(zip(LOBES[row[0]], row[1], strict=True)))
@@ -83,10 +97,14 @@ def on_device(row: list[Any], runtime: TimedRuntime) -> LobeEvaluator:
     return lobe(row, device_call(load_library(), runtime))
 
 
-@pytest.mark.parametrize("row", SETTINGS, ids=label)
-def test_density_integrates_to_one(runtime: TimedRuntime, row: list[Any]) -> None:
+@pytest.mark.parametrize("chosen", VIEWS)
+@pytest.mark.parametrize("index", range(len(SETTINGS)), ids=lambda k: label(SETTINGS[k]))
+def test_density_integrates_to_one(
+    runtime: TimedRuntime, index: int, chosen: Callable[[int], list[int]]
+) -> None:
+    row = SETTINGS[index]
     evaluator = on_device(row, runtime)
-    for v in views():
+    for v in (views()[k] for k in chosen(index)):
         chart = chart_for(row[0], dict(evaluator.parameters), v)
         total = sphere_integral(evaluator.density(v), chart)
         assert abs(total - 1.0) <= CHECKS["integral"]["tolerance"], (v, total)
@@ -118,12 +136,14 @@ def test_samples_follow_the_density_for_every_view(runtime: TimedRuntime, index:
         assert follows(SETTINGS[index], runtime, v, SEED + 1000 * (k + 1) + index) >= level, v
 
 
-@pytest.mark.parametrize("row", SETTINGS, ids=label)
-def test_weights_are_bounded(runtime: TimedRuntime, row: list[Any]) -> None:
+@pytest.mark.parametrize("chosen", VIEWS)
+@pytest.mark.parametrize("index", range(len(SETTINGS)), ids=lambda k: label(SETTINGS[k]))
+def test_weights_are_bounded(runtime: TimedRuntime, index: int, chosen: Callable[[int], list[int]]) -> None:
+    row = SETTINGS[index]
     evaluator = on_device(row, runtime)
     ends = (0.0, 2.0**-24, 0.25, 0.5, 1.0 - 2.0**-20, 1.0 - 2.0**-24)
     u = np.concatenate([grid_pairs(20_000, SEED), np.array(list(itertools.product(ends, repeat=2)))])
-    for v in views():
+    for v in (views()[k] for k in chosen(index)):
         found, l = weights(evaluator, u, v)
         assert np.isfinite(found).all()
         np.testing.assert_allclose(np.linalg.norm(l, axis=1), 1.0, atol=CHECKS["length"]["tolerance"])
@@ -133,19 +153,21 @@ def test_weights_are_bounded(runtime: TimedRuntime, row: list[Any]) -> None:
 
 
 @cache
-def exact_albedos(index: int) -> list[float]:
-    """Albedo of the float64 reference of a setting for every view; computed once for all targets."""
+def exact_albedo(index: int, view_index: int) -> float:
+    """Albedo of the float64 reference of a setting for a view; computed once for all targets."""
     truth = lobe(SETTINGS[index], reference_call(REFERENCES))
-    charts = [chart_for(truth.lobe, dict(truth.parameters), v) for v in views()]
-    return [albedo_by_quadrature(truth, v, chart) for v, chart in zip(views(), charts, strict=True)]
+    v = views()[view_index]
+    return albedo_by_quadrature(truth, v, chart_for(truth.lobe, dict(truth.parameters), v))
 
 
+@pytest.mark.parametrize("chosen", VIEWS)
 @pytest.mark.parametrize("index", [*settings(COSTLY)], ids=lambda k: label(SETTINGS[k]))
-def test_furnace(runtime: TimedRuntime, index: int) -> None:
+def test_furnace(runtime: TimedRuntime, index: int, chosen: Callable[[int], list[int]]) -> None:
     check, row = CHECKS["furnace"], SETTINGS[index]
     evaluator = on_device(row, runtime)
-    for v, exact in zip(views(), exact_albedos(index), strict=True):
-        found = albedo_by_samples(evaluator, v, SEED, check["count"], check["sets"])
+    for k in chosen(index):
+        exact = exact_albedo(index, k)
+        found = albedo_by_samples(evaluator, views()[k], SEED, check["count"], check["sets"])
         bias = found.mean - exact
         print(
             f"seed {SEED}: {evaluator.name}: {found.mean:.5f} +- {found.standard_error:.1e}, bias {bias:.1e}"
