@@ -57,9 +57,14 @@ class KernelOptions:
 PLAIN = KernelOptions()
 
 
-@functools.lru_cache(maxsize=512)
 def kernel(library: Library, name: str, target: str, options: KernelOptions = PLAIN) -> str:
     """The complete program that loads a function's arguments, calls it and stores its value."""
+    return _kernel(library, name, target, options)
+
+
+@functools.lru_cache(maxsize=512)
+def _kernel(library: Library, name: str, target: str, options: KernelOptions) -> str:
+    # Behind a function without defaults, since the cache takes a call with and without them for two.
     body = kernel_body(library, name, target, options)
     return _complete(library, name, target, options, body)
 

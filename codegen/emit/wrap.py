@@ -41,6 +41,8 @@ def code(line: str, indent: str, hang: str | None = None) -> list[str]:
 
 def comment(text: str, first: str, rest: str) -> list[str]:
     """A comment wrapped at WIDTH; `first` and `rest` start its first and its further lines."""
+    if text and len(first) + len(text) <= WIDTH and text.isprintable() and text == text.strip():
+        return [first + text]  # as below, and quicker
     return textwrap.wrap(
         text,
         WIDTH,
