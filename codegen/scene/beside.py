@@ -19,6 +19,7 @@ from typing import Any, TypeVar
 Result = TypeVar("Result")
 First = TypeVar("First")
 Second = TypeVar("Second")
+Third = TypeVar("Third")
 
 
 def beside(make: Callable[[], Result], *, forked: bool) -> Callable[[], Result]:
@@ -31,12 +32,12 @@ def beside(make: Callable[[], Result], *, forked: bool) -> Callable[[], Result]:
     return result
 
 
-def both_beside(
-    first: Callable[[], First], second: Callable[[], Second], *, forked: bool
-) -> tuple[Callable[[], First], Callable[[], Second]]:
-    """The same for two works that one process does in turn; the second goes on while the first is used."""
-    one, other = _in_turn([first, second], forked)
-    return one, other
+def in_turn_beside(
+    first: Callable[[], First], second: Callable[[], Second], third: Callable[[], Third], *, forked: bool
+) -> tuple[Callable[[], First], Callable[[], Second], Callable[[], Third]]:
+    """The same for works that one process does in turn; it goes on while the results before are used."""
+    one, two, three = _in_turn([first, second, third], forked)
+    return one, two, three
 
 
 def _in_turn(works: Sequence[Callable[[], Any]], forked: bool) -> Sequence[Callable[[], Any]]:

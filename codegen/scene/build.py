@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -23,7 +23,7 @@ from codegen.passes.analysis.operations import operations
 from codegen.passes.probe import operations_left
 from codegen.passes.specialise import Specialised
 from codegen.scene import environment
-from codegen.scene.beside import beside, both_beside
+from codegen.scene.beside import beside, in_turn_beside
 from codegen.scene.description.document import Scene
 from codegen.scene.description.lights import UNROLLED
 from codegen.scene.environment import ConstantLight, MapError
@@ -113,7 +113,7 @@ class Builder:
     """Builds one scene.
 
     runtimes   target -> runtime, or the reason why there is none
-    compilers  count instructions beside the proofs: `counting`, by general and final
+    counting   instructions of both functions, by a compiler beside the proofs
     """
 
     library: Library
@@ -122,19 +122,26 @@ class Builder:
     timed: bool = True
     say: Progress = lambda sentence: None
     results: Results = field(default_factory=dict)
-    compilers: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(2))
-    counting: dict[str, Future[int | None]] = field(default_factory=dict)
+    counting: spirv.Counting | None = None
 
     def build(self) -> Outcome:
         """Everything but the files; raises UserError where nothing may be written."""
+        try:
+            return self._built()
+        finally:
+            if self.counting is not None:
+                self.counting.close()
+
+    def _built(self) -> Outcome:
         begin = time.perf_counter()
         constant, pixels = self.constant_lights()
         general = general_function(self.scene, constant)
         library = self.library.with_functions([general.function])
         self.say("searching")
-        points = draw(self.scene, general, SEARCH_POINTS)
-        wide, ahead = both_beside(
-            partial(exact_values, library, general.function.name, points),
+        drawn = functools.cache(partial(draw, self.scene, general, SEARCH_POINTS))
+        points, wide, ahead = in_turn_beside(
+            drawn,
+            lambda: exact_values(library, general.function.name, drawn()),
             partial(self.ahead, library, general, constant, pixels),
             forked=not self.executed,
         )
@@ -159,20 +166,19 @@ class Builder:
         proven, exact, single, error = ahead()
         if single is not None:
             self.results["float32", general.function.body] = single
-        with self.compilers:
-            results = [self.proven(library, general, reducer, reduced, proven, exact)]
-            for target, searched in following.items():
-                self.say(f"searching for {target}")
-                other = searched()
-                if not isinstance(other, Reduced):
-                    other = reducer.reduced(Prices.of(library, target), self.scene.budget, other)
-                results.append(self.proven(library, general, reducer, other, proven, exact))
-            self.say("probing what is left")
-            final = results[0].reduced
-            remaining = left() if final is reduced else self.remaining(library, final)
+        results = [self.proven(library, general, reducer, reduced, proven, exact)]
+        for target, searched in following.items():
+            self.say(f"searching for {target}")
+            other = searched()
+            if not isinstance(other, Reduced):
+                other = reducer.reduced(Prices.of(library, target), self.scene.budget, other)
+            results.append(self.proven(library, general, reducer, other, proven, exact))
+        self.say("probing what is left")
+        final = results[0].reduced
+        remaining = left() if final is reduced else self.remaining(library, final)
         for result in results:
-            if result.target == "glsl":
-                result.spirv = {key: count.result() for key, count in self.counting.items()}
+            if result.target == "glsl" and self.counting is not None:
+                result.spirv = self.counting.results()
         return Outcome(
             scene=self.scene,
             general=general,
@@ -289,8 +295,9 @@ class Builder:
             unavailable=reason,
         )
         if target == "glsl":
-            texts = text.spirv_texts(library, self.scene, general, reduced)
-            self.counting = {key: self.compilers.submit(spirv.instructions, *t) for key, t in texts.items()}
+            if self.counting is not None:
+                self.counting.close()
+            self.counting = spirv.Counting(text.spirv_texts(library, self.scene, general, reduced))
         if runtime is not None and self.timed and final_proof.holds(self.scene.budget):
             self.say(f"timing on {target}")
             extended = library.with_functions([reduced.final.function])

@@ -1,7 +1,8 @@
 """Work beside the search: what it makes, what it raises, and that a scene is the same with and without.
 
 Plan.
-  results  arrays and objects come back as they are, from a process or from whoever waits
+  results  arrays and objects come back as they are, from a process or from whoever waits; one process does
+           works in turn, each on what those before left
   errors   an error of the work is raised where its result is asked for
   ends     a process that ends without a result is made up for
   scenes   the files of a scene that has a map are the same to the byte
@@ -20,7 +21,7 @@ from codegen.cli import run
 from codegen.errors import UserError
 from codegen.maps.image import exr
 from codegen.scene import build
-from codegen.scene.beside import beside
+from codegen.scene.beside import beside, in_turn_beside
 
 SCENE = """
 [scene]
@@ -42,6 +43,19 @@ def test_results_come_back(forked: bool) -> None:
     process, numbers = made()
     assert (process != os.getpid()) == (forked and (os.cpu_count() or 1) > 1)
     assert np.array_equal(numbers, np.arange(300_000))
+
+
+@pytest.mark.parametrize("forked", [False, True])
+def test_works_in_turn_go_on_from_each_other(forked: bool) -> None:
+    made: list[int] = []
+
+    def work() -> int:
+        made.append(len(made))
+        return made[-1]
+
+    waits = in_turn_beside(work, work, work, forked=forked)
+    assert [wait() for wait in waits] == [0, 1, 2]
+    assert bool(made) == (not forked or os.cpu_count() == 1)
 
 
 @pytest.mark.parametrize("forked", [False, True])

@@ -2,7 +2,7 @@
 
 Plan. One scene with a directional light, a point light and a map, and ranges and constants, is built without
 drivers. report.json and report.md are held against what they have to say; speeds, which need a driver, are
-put in.
+put in. A text that the compiler refuses does not keep it from counting another one.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from codegen.library import default_root
 from codegen.lines.linemap import Origin, read_map
 from codegen.maps.image import exr
 from codegen.scene.report.markdown import as_markdown
-from codegen.scene.report.spirv import glslang
+from codegen.scene.report.spirv import Counting, glslang
 
 SCENE = """
 [scene]
@@ -109,6 +109,17 @@ def test_it_counts_before_and_after(data: dict[str, Any]) -> None:
             assert min(spirv["general"], spirv["final"]) > 10  # general has one text for all lights
         else:
             assert spirv is None or set(spirv.values()) == {None}
+
+
+@pytest.mark.skipif(glslang() is None, reason="glslang is not installed")
+def test_a_text_that_is_refused_leaves_the_others_counted() -> None:
+    good = "float vair_twice(float a) { return 2.0 * a; }", "vair_"
+    (alone,) = Counting({"good": good}).results().values()
+    assert alone is not None
+    assert Counting({"bad": ("float vair_twice(", "vair_"), "good": good}).results() == {
+        "bad": None,
+        "good": alone,
+    }
 
 
 def test_lines_lead_to_the_library(

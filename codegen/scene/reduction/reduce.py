@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from codegen.errors import UserError
 from codegen.ir import nodes as ir
 from codegen.library import Library
 from codegen.passes.analysis.operations import operations
@@ -111,20 +112,26 @@ class Reducer:
         library: Library,
         scene: Scene,
         general: General,
-        points: Points,
+        points: Points | Callable[[], Points],
         exact: Callable[[], Floats] | None = None,
     ) -> Reducer:
         """The reducer of a scene over points of it; `library` holds the general function.
 
-        exact  waits for the function's values in float64, which another process computes meanwhile; None
-               where they are computed here
+        points  may be waited for
+        exact   waits for the function's values in float64, which another process computes meanwhile; None
+                where they are computed here
         """
         name = general.function.name
         known = knowledge(scene, general)
         made: dict[tuple[object, ...], Specialised] = {}
         if exact is not None:
-            made[(), 0] = known.specialised(library, name, scene.function)
-        reference = Reference.of(library, name, points, exact)
+            try:
+                made[(), 0] = known.specialised(library, name, scene.function)
+            except UserError:
+                if not isinstance(points, Points):
+                    points()  # that there are none says more
+                raise
+        reference = Reference.of(library, name, points if isinstance(points, Points) else points(), exact)
         search = Search(library, general, reference, model_ranges(scene, general))
         return Reducer(library, general, known, reference, search, scene.function, made)
 
