@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from codegen.intervals.accuracy import Absolute, Row, Ulp
 from codegen.intervals.compiled import ends, kernels
 from codegen.intervals.context import Context
@@ -27,6 +29,12 @@ def _lanes(context: Context, *values: Range) -> int:
     return 0
 
 
+def _run(loop: Any, count: int, *operands: Any) -> Found:
+    """What a loop finds that gives two ends."""
+    low, high = np.empty(count), np.empty(count)
+    return low, high, loop(*operands, low, high), None
+
+
 def _ends(x: Range) -> tuple[Any, Any]:
     return ends(x.low, x.high)
 
@@ -43,21 +51,20 @@ def add(context: Context, a: Range, b: Range) -> Found | None:
         return None
     a, b = _shared_last(a, b)
     if context.table.rounding == "either":
-        low, high, look = kernels().add(*_ends(a), *_ends(b), count)
-        return low, high, look, None
+        return _run(kernels().add, count, *_ends(a), *_ends(b))
     products = [x for x in (a, b) if context.table.fused and x.product is not None]
     if not products:
         if a.is_point and b.is_point:
-            near, look = kernels().add_points(_ends(a)[0], _ends(b)[0], count)
+            near = np.empty(count)
+            look = kernels().add_points(_ends(a)[0], _ends(b)[0], near)
             return None if look else (near, near, 0, None)
-        low, high, look = kernels().add_nearest(*_ends(a), *_ends(b), count)
-        return low, high, look, None
+        return _run(kernels().add_nearest, count, *_ends(a), *_ends(b))
     of, other = (a, b) if products[0] is a else (b, a)
     assert of.product is not None
-    low, high, look = kernels().add_fused(*_ends(of), *_ends(other), *ends(*of.product), count)
+    low, high, look, _ = _run(kernels().add_fused, count, *_ends(of), *_ends(other), *ends(*of.product))
     if len(products) > 1:
         assert other.product is not None
-        look = kernels().fuse(low, high, *_ends(of), *ends(*other.product), count)
+        look = kernels().fuse(low, high, *_ends(of), *ends(*other.product))
     return low, high, look, None
 
 
@@ -66,8 +73,7 @@ def subtract(context: Context, a: Range, b: Range) -> Found | None:
     count = _lanes(context, a, b)
     if not count or context.table.rounding != "either":
         return None
-    low, high, look = kernels().subtract(*_ends(a), *_ends(b), count)
-    return low, high, look, None
+    return _run(kernels().subtract, count, *_ends(a), *_ends(b))
 
 
 def multiply(context: Context, a: Range, b: Range) -> Found | None:
@@ -78,31 +84,39 @@ def multiply(context: Context, a: Range, b: Range) -> Found | None:
     if context.table.rounding == "nearest":
         a, b = _shared_last(a, b)
         if a.is_point and b.is_point:
-            exact, near, look = kernels().multiply_points(_ends(a)[0], _ends(b)[0], count)
+            exact, near = np.empty(count), np.empty(count)
+            look = kernels().multiply_points(_ends(a)[0], _ends(b)[0], exact, near)
             return None if look else (near, near, 0, (exact, exact) if context.table.fused else None)
         if a is b:
             return None
-        least, most, low, high, look = kernels().multiply_nearest(*_ends(a), *_ends(b), count)
+        least, most = np.empty(count), np.empty(count)
+        low, high, look, _ = _run(kernels().multiply_nearest, count, *_ends(a), *_ends(b), least, most)
         return low, high, look, (least, most) if context.table.fused else None
     if a is b:
-        low, high, look = kernels().square(*_ends(a), count)
-    else:
-        a, b = _shared_last(a, b)
-        low, high, look = kernels().multiply(*_ends(a), *_ends(b), count)
-    return low, high, look, None
+        return _run(kernels().square, count, *_ends(a))
+    a, b = _shared_last(a, b)
+    return _run(kernels().multiply, count, *_ends(a), *_ends(b))
 
 
-_ORDERS = {"<": ("less", False), "<=": ("at_most", False), ">": ("at_most", True), ">=": ("less", True)}
+_ORDERS = {
+    "<": ("less", False),
+    "<=": ("at_most", False),
+    ">": ("at_most", True),
+    ">=": ("less", True),
+    "==": ("equal", False),
+    "!=": ("equal", True),
+}
 """Comparison -> the loop that decides it, and whether that decides the opposite."""
 
 
 def compare(context: Context, op: str, a: Range, b: Range) -> tuple[Array, Array, int] | None:
     """Whether a comparison of two different values may hold, may fail, and may do both in a lane."""
     count = _lanes(context, a, b)
-    if not count or a is b or op not in _ORDERS:
+    if not count or a is b:
         return None
     name, opposite = _ORDERS[op]
-    true, false, undecided = getattr(kernels(), name)(*_ends(a), *_ends(b), count)
+    true, false = np.empty(count, np.bool_), np.empty(count, np.bool_)
+    undecided = getattr(kernels(), name)(*_ends(a), *_ends(b), true, false)
     return (false, true, undecided) if opposite else (true, false, undecided)
 
 
@@ -112,8 +126,7 @@ def divide(context: Context, row: Row, x: Range, y: Range) -> Found | None:
     if not count or "x" in row.magnitude or row.normal:
         return None
     assert isinstance(row.accuracy, Ulp)
-    low, high, look = kernels().divide(*_ends(x), *_ends(y), row.accuracy.ulps, *_limits(row, "y"), count)
-    return low, high, look, None
+    return _run(kernels().divide, count, *_ends(x), *_ends(y), row.accuracy.ulps, *_limits(row, "y"))
 
 
 def _limits(row: Row, operand: str) -> tuple[float, float]:
@@ -131,8 +144,7 @@ def within_ulp(
     count = _lanes(context, Range(low, high))
     if not count:
         return None
-    low, high, look = kernels().within_ulp(low, high, ulps_low, ulps_high, count)
-    return low, high, look, None
+    return _run(kernels().within_ulp, count, low, high, ulps_low, ulps_high)
 
 
 def absolute_or_ulp(context: Context, promise: Absolute, x: Range, low: Array, high: Array) -> Found | None:
@@ -140,10 +152,8 @@ def absolute_or_ulp(context: Context, promise: Absolute, x: Range, low: Array, h
     count = _lanes(context, x)
     if not count or promise.elsewhere is None:
         return None
-    low, high, look = kernels().absolute_or_ulp(
-        *_ends(x), *ends(low, high), promise.bound, *promise.within, promise.elsewhere.ulps, count
-    )
-    return low, high, look, None
+    given = promise.bound, *promise.within, promise.elsewhere.ulps
+    return _run(kernels().absolute_or_ulp, count, *_ends(x), *ends(low, high), *given)
 
 
 def square_root(context: Context, x: Range, root: Row, quotient: Row) -> Found | None:
@@ -152,10 +162,8 @@ def square_root(context: Context, x: Range, root: Row, quotient: Row) -> Found |
     if not count or "x" in quotient.magnitude or root.magnitude:
         return None
     assert isinstance(root.accuracy, Ulp) and isinstance(quotient.accuracy, Ulp)
-    low, high, look = kernels().square_root(
-        *_ends(x), root.accuracy.ulps, quotient.accuracy.ulps, *_limits(quotient, "y"), count
-    )
-    return low, high, look, None
+    ulps = root.accuracy.ulps, quotient.accuracy.ulps
+    return _run(kernels().square_root, count, *_ends(x), *ulps, *_limits(quotient, "y"))
 
 
 def inverse_square_root(context: Context, x: Range, row: Row) -> Found | None:
@@ -164,8 +172,7 @@ def inverse_square_root(context: Context, x: Range, row: Row) -> Found | None:
     if not count:
         return None
     assert isinstance(row.accuracy, Ulp)
-    low, high, look = kernels().inverse_square_root(*_ends(x), row.accuracy.ulps, count)
-    return low, high, look, None
+    return _run(kernels().inverse_square_root, count, *_ends(x), row.accuracy.ulps)
 
 
 def sum_of_three(context: Context, terms: list[Range]) -> Range | None:
@@ -175,8 +182,8 @@ def sum_of_three(context: Context, terms: list[Range]) -> Range | None:
         return None
     if any(t.cause is not None or len(t.low) == 1 for t in terms):
         return None
-    a, b, c = terms
-    low, high, look = kernels().sum_of_three(a.low, a.high, b.low, b.high, c.low, c.high, count)
+    every = [end for term in terms for end in (term.low, term.high)]
+    low, high, look, _ = _run(kernels().sum_of_three, count, *every)
     return None if look else Range(low, high)
 
 
@@ -192,5 +199,4 @@ def scaled_dot(
     if not count:
         return None
     every = [end for x in parts for end in (x.low, x.high)]
-    low, high, look = kernels().scaled_dot(*every, all(same), share, epsilon, count)
-    return low, high, look, None
+    return _run(kernels().scaled_dot, count, *every, all(same), share, epsilon)

@@ -25,6 +25,7 @@ from codegen.intervals.values import (
     Whole,
     all_of,
     always,
+    any_of,
     choose,
     constant,
     opposite,
@@ -35,6 +36,7 @@ from codegen.library import Library
 
 Singles = tuple[Single, ...]
 V = TypeVar("V")
+ALWAYS, NEVER = always(True), always(False)
 
 
 class Frame:
@@ -48,12 +50,12 @@ class Frame:
         self.function = function
         self.scope = dict(arguments)
         self.result: Value | None = None
-        self.returned = always(False)
+        self.returned = NEVER
 
     def run(self) -> Value:
         """The function's value."""
         caller = self.context.function, self.context.line
-        self.block(self.function.body, always(True))
+        self.block(self.function.body, ALWAYS)
         self.context.function, self.context.line = caller
         assert self.result is not None
         return self.result
@@ -65,8 +67,7 @@ class Frame:
                 case ir.Let():
                     self.scope[s.name] = self.expr(s.value)
                 case ir.Assign():
-                    live = all_of(active, opposite(self.returned))
-                    self.scope[s.name] = choose(live, self.expr(s.value), self.scope[s.name])
+                    self.scope[s.name] = choose(self.live(active), self.expr(s.value), self.scope[s.name])
                 case ir.If():
                     condition = self.truth(s.condition)
                     self.block(s.then, all_of(active, condition))
@@ -75,9 +76,13 @@ class Frame:
                     self.loop(s, active)
                 case ir.Return():
                     value = self.expr(s.value)
-                    live = all_of(active, opposite(self.returned))
+                    live = self.live(active)
                     self.result = value if self.result is None else choose(live, value, self.result)
-                    self.returned = Truth(self.returned.true | live.true, self.returned.false & live.false)
+                    self.returned = any_of(self.returned, live)
+
+    def live(self, active: Truth) -> Truth:
+        """Which lanes of a block have not returned."""
+        return active if self.returned is NEVER else all_of(active, opposite(self.returned))
 
     def loop(self, s: ir.For, active: Truth) -> None:
         """All iterations that any lane may run."""
@@ -88,7 +93,7 @@ class Frame:
         for i in range(s.start, stop):
             key = ("i32", i) if signed else ("u32", "int", i, str(i))
             self.scope[s.name] = self.shared(key, functools.partial(constant, i, signed))
-            running = always(True) if limit is None else Truth(limit.high > i, limit.low <= i)
+            running = ALWAYS if limit is None else Truth(limit.high > i, limit.low <= i)
             self.block(s.body, all_of(active, running))
 
     def truth(self, e: ir.Expr) -> Truth:
@@ -112,11 +117,10 @@ class Frame:
         return self.scope[e.name]
 
     def unary(self, e: ir.Unary) -> Value:
-        return self.each(e.op, lambda a: unary(self.context, e.op, a[0]), (self.expr(e.operand),))
+        return self.each(e.op, unary, (self.expr(e.operand),))
 
     def binary(self, e: ir.Binary) -> Value:
-        parts = (self.expr(e.left), self.expr(e.right))
-        return self.each(e.op, lambda a: binary(self.context, e.op, a[0], a[1]), parts)
+        return self.each(e.op, binary, (self.expr(e.left), self.expr(e.right)))
 
     def convert(self, e: ir.Convert) -> Value:
         return self.converted(e.type, self.expr(e.operand))
@@ -132,8 +136,8 @@ class Frame:
     def swizzle(self, e: ir.Swizzle) -> Value:
         vector = self.expr(e.value)
         assert isinstance(vector, tuple)
-        chosen = tuple(vector["xyzw".index(c)] for c in e.components)
-        return chosen[0] if len(chosen) == 1 else chosen
+        chosen = [vector["xyzw".index(c)] for c in e.components]
+        return chosen[0] if len(chosen) == 1 else tuple(chosen)
 
     def select(self, e: ir.Select) -> Value:
         condition, if_true, if_false = (self.expr(c) for c in ir.children(e))
@@ -157,7 +161,7 @@ class Frame:
             constants[key] = make()
         return constants[key]
 
-    def each(self, op: str, apply: Callable[[Singles], Single], parts: tuple[Value, ...]) -> Value:
+    def each(self, op: str, apply: Callable[..., Single], parts: tuple[Value, ...]) -> Value:
         """An operation component by component; a scalar operand goes with every component of a vector."""
         size = 0
         for p in parts:
@@ -168,18 +172,18 @@ class Frame:
         columns = [p if isinstance(p, tuple) else (p,) * size for p in parts]
         return tuple(self.once(op, apply, components) for components in zip(*columns, strict=True))
 
-    def once(self, op: str, apply: Callable[[Singles], V], parts: Singles) -> V:
-        """An operation on these very values; the result of the first time counts."""
+    def once(self, op: str, apply: Callable[..., V], parts: Singles) -> V:
+        """apply(context, op, *parts) of these very values; the result of the first time counts."""
         names = [p.number for p in parts]
         if op in ("+", "*"):
             names.sort()
         key = (op, *names)
-        memory = self.context.memory
-        found = memory.recall(key)
+        context = self.context
+        found: V | None = context.memory.recall(key)
         if found is None:
-            self.context.operation = op
-            found = memory.keep(key, apply(parts))
-        return cast(V, found)
+            context.operation = op
+            return cast(V, context.memory.keep(key, apply(context, op, *parts)))
+        return found
 
     def builtin(self, e: ir.Builtin) -> Value:
         op, args = e.op, tuple(self.expr(a) for a in e.args)
@@ -195,8 +199,8 @@ class Frame:
             vectors = [cast(tuple[Range, ...], a) for a in args]
             flat = tuple(c for v in vectors for c in v)
             function = VECTOR_BUILTINS[op]
-            return self.once(op, lambda _: cast(Value, function(self.context, *vectors)), flat)
-        return self.each(op, lambda a: scalar_builtin(self.context, op, a), args)
+            return self.once(op, lambda *_: cast(Value, function(self.context, *vectors)), flat)
+        return self.each(op, scalar_builtin, args)
 
     def call(self, e: ir.Call) -> Value:
         function = self.library.function(e.function)
@@ -216,13 +220,12 @@ class Frame:
     def converted(self, type_: Type, value: Value) -> Value:
         assert isinstance(type_, Scalar)
 
-        def apply(parts: tuple[Single, ...]) -> Single:
-            a = parts[0]
+        def apply(context: Context, op: str, a: Single) -> Single:
             if isinstance(a, Range):
-                return a if type_ == F32 else logic.to_integer(self.context, a, type_ == I32)
+                return a if type_ == F32 else logic.to_integer(context, a, type_ == I32)
             assert isinstance(a, Whole)
             if type_ == F32:
-                return logic.to_float(self.context, a)
+                return logic.to_float(context, a)
             return reinterpreted(a, type_ == I32)
 
         return self.once(f"{type_.name}()", apply, (cast(Single, value),))

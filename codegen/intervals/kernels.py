@@ -4,8 +4,8 @@ Imported only where numba is installed and there are lanes enough, see codegen.i
 compute is defined by codegen.intervals.arithmetic and codegen.intervals.logic over numpy arrays,
 bit for bit; here nothing is written between the steps of an operation. They are for tables that flush.
 
-An operand is an array (N,), or one number for all lanes. Results are fresh arrays and a flag: whether a lane
-needs a closer look, because it may overflow or lies outside what is promised.
+An operand is an array (N,), or one number for all lanes. The last arrays take the results; what is returned
+is a flag: whether a lane needs a closer look, because it may overflow or lies outside what is promised.
 """
 
 from __future__ import annotations
@@ -28,82 +28,82 @@ from codegen.intervals.lanes import (
     sum_up,
     up,
 )
-from codegen.intervals.numbers import FLOAT64_MARGIN, LARGEST, SMALLEST
+from codegen.intervals.numbers import FLOAT64_MARGIN, LARGEST, SMALLEST, Array
 
 Ends = Any
 
 
 @compiled
-def add(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+def add(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, low: Array, high: Array) -> int:
     """a + b, rounded to either neighbour."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         x = settled_low(sum_down(at(a_low, i), at(b_low, i)))
         y = settled_high(sum_up(at(a_high, i), at(b_high, i)))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return low, high, look
+    return look
 
 
 @compiled
-def subtract(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+def subtract(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, low: Array, high: Array) -> int:
     """a - b, rounded to either neighbour."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         x = settled_low(sum_down(at(a_low, i), -at(b_high, i)))
         y = settled_high(sum_up(at(a_high, i), -at(b_low, i)))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return low, high, look
+    return look
 
 
 @compiled
-def multiply(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+def multiply(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, low: Array, high: Array) -> int:
     """a b, rounded to either neighbour."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         p, q = at(a_low, i) * at(b_low, i), at(a_high, i) * at(b_low, i)
         r, s = at(a_low, i) * at(b_high, i), at(a_high, i) * at(b_high, i)
         x = settled_low(down(min(min(p, q), min(r, s))))
         y = settled_high(up(max(max(p, q), max(r, s))))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return low, high, look
+    return look
 
 
 @compiled
-def square(a_low: Ends, a_high: Ends, count: int) -> Any:
+def square(a_low: Ends, a_high: Ends, low: Array, high: Array) -> int:
     """a a, rounded to either neighbour."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         p, q = at(a_low, i), at(a_high, i)
         near, far = max(max(p, -q), 0.0), max(abs(p), abs(q))
         x, y = settled_low(down(near * near)), settled_high(up(far * far))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return low, high, look
+    return look
 
 
 @compiled
-def within_ulp(low: Ends, high: Ends, ulps_low: Ends, ulps_high: Ends, count: int) -> Any:
+def within_ulp(low: Ends, high: Ends, ulps_low: Ends, ulps_high: Ends, first: Array, last: Array) -> int:
     """Float32 within some ULP of numbers between two different ends."""
-    first, last, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(first)):
         x = settled_low(least_within(at(low, i), at(high, i), at(ulps_low, i)))
         y = settled_high(most_within(at(low, i), at(high, i), at(ulps_high, i)))
         first[i], last[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return first, last, look
+    return look
 
 
 @compiled
 def absolute_or_ulp(
     x_low: Ends, x_high: Ends, low: Ends, high: Ends, bound: float, first: float, last: float, ulps: float,
-    count: int,
-) -> Any:  # fmt: skip
+    least: Array, most: Array,
+) -> int:  # fmt: skip
     """Float32 within a bound where x lies from first to last, elsewhere within some ULP."""
-    least, most, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(least)):
         p, q, u, v = at(low, i), at(high, i), at(x_low, i), at(x_high, i)
         near_low = up(p - abs(p) * FLOAT64_MARGIN - bound)
         near_high = down(q + abs(q) * FLOAT64_MARGIN + bound)
@@ -115,16 +115,24 @@ def absolute_or_ulp(
         y = settled_high(near_high if contained else either_high)
         least[i], most[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return least, most, look
+    return look
 
 
 @compiled
 def divide(
-    x_low: Ends, x_high: Ends, y_low: Ends, y_high: Ends, ulps: float, near: float, far: float, count: int
-) -> Any:
+    x_low: Ends,
+    x_high: Ends,
+    y_low: Ends,
+    y_high: Ends,
+    ulps: float,
+    near: float,
+    far: float,
+    low: Array,
+    high: Array,
+) -> int:
     """x / y within some ULP; looked at where |y| may lie below `near` or above `far`."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         p, q, u, v = at(x_low, i), at(x_high, i), at(y_low, i), at(y_high, i)
         look |= (max(u, -v) < near) | (max(abs(u), abs(v)) > far)
         negative = v < 0.0
@@ -134,7 +142,7 @@ def divide(
         x, y = settled_low(least_within(a, b, ulps)), settled_high(most_within(a, b, ulps))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return low, high, look
+    return look
 
 
 @inlined
@@ -144,24 +152,31 @@ def _inverse_root(low: Any, high: Any, ulps: Any) -> Any:
 
 
 @compiled
-def inverse_square_root(x_low: Ends, x_high: Ends, ulps: float, count: int) -> Any:
+def inverse_square_root(x_low: Ends, x_high: Ends, ulps: float, low: Array, high: Array) -> int:
     """1 / sqrt(x); looked at where x may be 0 or less."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         p, q = at(x_low, i), at(x_high, i)
         x, y = _inverse_root(p, q, ulps)
         low[i], high[i] = x, y
         look |= (p <= 0.0) | (y > LARGEST)
-    return low, high, look
+    return look
 
 
 @compiled
 def square_root(
-    x_low: Ends, x_high: Ends, ulps: float, ulps_divide: float, near: float, far: float, count: int
-) -> Any:
+    x_low: Ends,
+    x_high: Ends,
+    ulps: float,
+    ulps_divide: float,
+    near: float,
+    far: float,
+    low: Array,
+    high: Array,
+) -> int:
     """1 / (1 / sqrt(x)), each within its ULP, 0 where x may be 0; looked at where x may be negative."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         p, q = at(x_low, i), at(x_high, i)
         u, v = _inverse_root(p, q, ulps)
         least, most = 1.0 / v, 1.0 / u
@@ -172,7 +187,7 @@ def square_root(
         x, y = (0.0 if p < SMALLEST else x), (0.0 if q <= 0.0 else y)
         low[i], high[i] = x, y
         look |= (p < 0.0) | (u < near) | (v > far) | (y > LARGEST)
-    return low, high, look
+    return look
 
 
 @inlined
@@ -182,11 +197,11 @@ def _add(a_low: Any, a_high: Any, b_low: Any, b_high: Any) -> Any:
 
 @compiled
 def sum_of_three(
-    a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, c_low: Ends, c_high: Ends, count: int
-) -> Any:
+    a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, c_low: Ends, c_high: Ends, low: Array, high: Array
+) -> int:
     """The hull of the sums of three terms over all groupings, each rounded to either neighbour."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         a, b, c = at(a_low, i), at(b_low, i), at(c_low, i)
         p, q, r = at(a_high, i), at(b_high, i), at(c_high, i)
         bc, qr = _add(b, q, c, r)
@@ -199,7 +214,7 @@ def sum_of_three(
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST) | (min(bc, min(ac, ab)) < -LARGEST)
         look |= max(qr, max(pr, pq)) > LARGEST
-    return low, high, look
+    return look
 
 
 @inlined
@@ -222,11 +237,11 @@ def _size(low: Any, high: Any) -> Any:
 @compiled
 def scaled_dot(
     x: Ends, x_: Ends, y: Ends, y_: Ends, z: Ends, z_: Ends, u: Ends, u_: Ends, v: Ends, v_: Ends,
-    w: Ends, w_: Ends, squared: bool, share: float, epsilon: float, count: int,
-) -> Any:  # fmt: skip
+    w: Ends, w_: Ends, squared: bool, share: float, epsilon: float, low: Array, high: Array,
+) -> int:  # fmt: skip
     """(x, y, z) . (u, v, w), upper ends x_ ..., off by at most `share` `epsilon` times the largest square."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         if squared:
             (p, q), (r, s), (f, g) = _square(x[i], x_[i]), _square(y[i], y_[i]), _square(z[i], z_[i])
         else:
@@ -242,57 +257,58 @@ def scaled_dot(
         least = settled_low(max(least, 0.0) if squared else least)
         low[i], high[i] = least, settled_high(most)
         look |= (least < -LARGEST) | (high[i] > LARGEST)
-    return low, high, look
+    return look
 
 
 @compiled
-def choose(true: Ends, false: Ends, a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+def choose(
+    true: Ends, false: Ends, a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, low: Array, high: Array
+) -> None:
     """a where a condition holds, b where it does not, the hull where it may do either."""
-    low, high = np.empty(count), np.empty(count)
-    for i in range(count):
+    for i in range(len(low)):
         t, f = at(true, i), at(false, i)
         p, q, r, s = at(a_low, i), at(b_low, i), at(a_high, i), at(b_high, i)
         low[i] = min(p, q) if t & f else (p if t else q)
         high[i] = max(r, s) if t & f else (r if t else s)
-    return low, high
 
 
 @compiled
-def multiply_nearest(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+def multiply_nearest(
+    a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, least: Array, most: Array, low: Array, high: Array
+) -> int:
     """Ends of the exact products; and of a b, rounded to nearest."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    least, most = np.empty(count), np.empty(count)
-    for i in range(count):
+    look = 0
+    for i in range(len(least)):
         p, q = at(a_low, i) * at(b_low, i), at(a_high, i) * at(b_low, i)
         r, s = at(a_low, i) * at(b_high, i), at(a_high, i) * at(b_high, i)
         u, v = min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
         x, y = settled_low(nearest(u)), settled_high(nearest(v))
         least[i], most[i], low[i], high[i] = u, v, x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return least, most, low, high, look
+    return look
 
 
 @compiled
-def multiply_points(a: Ends, b: Ends, count: int) -> Any:
+def multiply_points(a: Ends, b: Ends, exact: Array, near: Array) -> int:
     """Exact products of numbers, and these rounded to nearest; looked at below the normal numbers as well."""
-    exact, near, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(exact)):
         p = at(a, i) * at(b, i)
         x = nearest(p)
         exact[i], near[i] = p, x
         look |= _unusual(x)
-    return exact, near, look
+    return look
 
 
 @compiled
-def add_points(a: Ends, b: Ends, count: int) -> Any:
+def add_points(a: Ends, b: Ends, near: Array) -> int:
     """Sums of numbers, rounded to nearest; looked at below the normal numbers as well."""
-    near, look = np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(near)):
         x = nearest(at(a, i) + at(b, i))
         near[i] = x
         look |= _unusual(x)
-    return near, look
+    return look
 
 
 @inlined
@@ -301,37 +317,37 @@ def _unusual(x: Any) -> Any:
 
 
 @compiled
-def add_nearest(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+def add_nearest(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, low: Array, high: Array) -> int:
     """a + b, rounded to nearest."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         x = settled_low(nearest(at(a_low, i) + at(b_low, i)))
         y = settled_high(nearest(at(a_high, i) + at(b_high, i)))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return low, high, look
+    return look
 
 
 @compiled
 def add_fused(
-    a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, least: Ends, most: Ends, count: int
-) -> Any:
+    a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, least: Ends, most: Ends, low: Array, high: Array
+) -> int:
     """a + b, rounded to nearest, or the exact product that is a, between `least` and `most`, plus b."""
-    low, high, look = np.empty(count), np.empty(count), 0
-    for i in range(count):
+    look = 0
+    for i in range(len(low)):
         p, q = nearest(at(a_low, i) + at(b_low, i)), nearest(at(a_high, i) + at(b_high, i))
         x = settled_low(min(p, sum_down(at(least, i), at(b_low, i))))
         y = settled_high(max(q, sum_up(at(most, i), at(b_high, i))))
         low[i], high[i] = x, y
         look |= (x < -LARGEST) | (y > LARGEST)
-    return low, high, look
+    return look
 
 
 @compiled
-def fuse(low: Ends, high: Ends, a_low: Ends, a_high: Ends, least: Ends, most: Ends, count: int) -> int:
+def fuse(low: Array, high: Array, a_low: Ends, a_high: Ends, least: Ends, most: Ends) -> int:
     """Widen settled sums, in place, by those of an exact product with a."""
     look = 0
-    for i in range(count):
+    for i in range(len(low)):
         x = min(low[i], settled_low(sum_down(at(least, i), at(a_low, i))))
         y = max(high[i], settled_high(sum_up(at(most, i), at(a_high, i))))
         low[i], high[i] = x, y
@@ -340,22 +356,34 @@ def fuse(low: Ends, high: Ends, a_low: Ends, a_high: Ends, least: Ends, most: En
 
 
 @compiled
-def less(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+def less(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, true: Array, false: Array) -> int:
     """Whether a < b may hold, whether it may fail, and whether both is so in a lane."""
-    true, false, undecided = np.empty(count, np.bool_), np.empty(count, np.bool_), 0
-    for i in range(count):
+    undecided = 0
+    for i in range(len(true)):
         t, f = at(a_low, i) < at(b_high, i), at(a_high, i) >= at(b_low, i)
         true[i], false[i] = t, f
         undecided |= t & f
-    return true, false, undecided
+    return undecided
 
 
 @compiled
-def at_most(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, count: int) -> Any:
+def at_most(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, true: Array, false: Array) -> int:
     """Whether a <= b may hold, whether it may fail, and whether both is so in a lane."""
-    true, false, undecided = np.empty(count, np.bool_), np.empty(count, np.bool_), 0
-    for i in range(count):
+    undecided = 0
+    for i in range(len(true)):
         t, f = at(a_low, i) <= at(b_high, i), at(a_high, i) > at(b_low, i)
         true[i], false[i] = t, f
         undecided |= t & f
-    return true, false, undecided
+    return undecided
+
+
+@compiled
+def equal(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, true: Array, false: Array) -> int:
+    """Whether a = b may hold, whether it may fail, and whether both is so in a lane."""
+    undecided = 0
+    for i in range(len(true)):
+        p, q, r, s = at(a_low, i), at(a_high, i), at(b_low, i), at(b_high, i)
+        t, f = (p <= s) & (r <= q), (p < q) | (r < s) | (p != r)
+        true[i], false[i] = t, f
+        undecided |= t & f
+    return undecided

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from codegen.intervals import bulk
-from codegen.intervals.arithmetic import rounded, settle
+from codegen.intervals.arithmetic import anything, rounded, settle
 from codegen.intervals.causes import Codes
 from codegen.intervals.context import MOST_WAYS, Context
 from codegen.intervals.numbers import Array
@@ -21,16 +21,21 @@ def compare(context: Context, op: str, a: Number, b: Number) -> Truth:
     """The truth of a comparison; undecided lanes fork, and the way taken narrows both operands."""
     if isinstance(a, Range) and isinstance(b, Range) and a.cause is None and b.cause is None:
         quick = bulk.compare(context, op, a, b)
-        if quick is not None and not quick[2]:
+    else:
+        quick = None
+    if quick is None:
+        true, false = _may_hold(op, a, b), _may_hold(_OPPOSITE[op], a, b)
+    else:
+        true, false, some_undecided = quick
+        if not some_undecided:
             context.decided()
-            return Truth(quick[0], quick[1])
-    true, false = _may_hold(op, a, b), _may_hold(_OPPOSITE[op], a, b)
+            return Truth(true, false)
     undecided = true & false
     for codes in (a.cause, b.cause):
         if codes is not None:  # a value that may be anything, NaN included, tells nothing by its order
             true, false = true | (codes > 0), false | (codes > 0)
             undecided = undecided & (codes == 0)
-    way = context.fork(undecided.astype(np.int64) + 1)
+    way = context.fork(undecided + np.int8(1))
     if way is None:
         return Truth(true, false)
     holds, fails = undecided & (way == 1), undecided & (way == 0)
@@ -82,6 +87,9 @@ def floor(context: Context, x: Range) -> Range:
     if x.is_point:
         return Range(low, low, x.cause)
     high = np.floor(x.high)
+    if x.cause is None and (low == high).all():
+        context.decided()
+        return Range(low, low)
     low, high = _follow(context, x, low, high, lambda k: (k, k + 1.0))
     return Range(low, high, x.cause)
 
@@ -95,10 +103,13 @@ def to_integer(context: Context, x: Range, is_signed: bool) -> Whole:
     codes: Codes = context.unbounded(
         x.cause, over if x.cause is None else over & (x.cause == 0), "x", "outside the integers of the type"
     )
-    if x.is_point and codes is None:
+    if codes is None and (x.is_point or (low == high).all()):
+        if not x.is_point:
+            context.decided()
         exact = low.astype(np.int64)
         return Whole(exact, exact, is_signed)
-    low, high = np.where(over, least, low), np.where(over, most, high)
+    if codes is not None:
+        low, high = np.where(over, least, low), np.where(over, most, high)
     low, high = _follow(
         context, x, low, high, lambda k: (np.where(k <= 0, k - 1.0, k), np.where(k >= 0, k + 1.0, k))
     )
@@ -111,8 +122,7 @@ def _follow(
 ) -> tuple[Array, Array]:
     """Results low ... high; in lanes that were told a way, that one, and x cut to what gives it."""
     with np.errstate(invalid="ignore"):
-        ways = np.where(high - low < MOST_WAYS, high - low + 1.0, MOST_WAYS + 1.0)
-    ways = np.where(np.isfinite(ways), ways, 1.0).astype(np.int32)
+        ways = np.fmin(high - low + 1.0, MOST_WAYS + 1.0).astype(np.int8)
     if x.cause is not None:
         ways = np.where(x.cause > 0, 1, ways)
     way = context.fork(ways)
@@ -129,9 +139,9 @@ def to_float(context: Context, a: Whole) -> Range:
     """The conversion to f32, rounded where the integer has more than 24 bits."""
     low = a.low.astype(np.float64)
     high = low if a.is_point else a.high.astype(np.float64)
-    if max(np.abs(low).max(initial=0.0), np.abs(high).max(initial=0.0)) > 2.0**24:
+    if max(-a.low.min(initial=0), a.high.max(initial=0)) > 2**24:
         low, high = rounded(context, low, high)
-    return settle(context, low, high, a.cause)
+    return Range(low, high) if a.cause is None else anything(low, high, a.cause)
 
 
 def from_bits(context: Context, a: Whole) -> Range:

@@ -18,6 +18,16 @@ FORKS = ("floor", "i32()", "u32()")
 """Operations that count as a fork and give numbers; comparisons give truth values, which are kept."""
 
 
+_NUMBERS = (Range, Whole)
+
+
+class _Droppable(weakref.ref[Any]):
+    """A result as long as others hold it; its number stays."""
+
+    __slots__ = ("number",)
+    number: int
+
+
 class Memory:
     """Key of an operation, its name first -> its result.
 
@@ -26,25 +36,21 @@ class Memory:
 
     def __init__(self, forgets: bool) -> None:
         self.forgets = forgets
-        self._kept: dict[Hashable, Any] = {}
-        # What was dropped is None here; its number stays.
-        self._seen: dict[Hashable, tuple[weakref.ref[Any], int]] = {}
+        self._results: dict[Hashable, Any] = {}
 
     def recall(self, key: Hashable) -> Any:
         """The result of an operation; None where there is none, or it was dropped."""
-        found = self._kept.get(key)
-        if found is None and (seen := self._seen.get(key)) is not None:
-            return seen[0]()
-        return found
+        found = self._results.get(key)
+        return found() if type(found) is _Droppable else found
 
     def keep(self, key: tuple[Any, ...], value: Any) -> Any:
         """The result, noted under its key; with its old number where it was computed before."""
-        droppable = self.forgets and isinstance(value, Range | Whole) and value.cause is None
-        if not droppable or key[0] in FORKS:
-            self._kept[key] = value
+        if self.forgets and type(value) in _NUMBERS and value.cause is None and key[0] not in FORKS:
+            before = self._results.get(key)
+            if before is not None:
+                value.number = before.number
+            self._results[key] = droppable = _Droppable(value)
+            droppable.number = value.number
         else:
-            seen = self._seen.get(key)
-            if seen is not None:
-                value.number = seen[1]
-            self._seen[key] = weakref.ref(value), value.number
+            self._results[key] = value
         return value

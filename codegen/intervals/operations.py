@@ -22,61 +22,49 @@ def unary(context: Context, op: str, a: Single) -> Single:
 
 def binary(context: Context, op: str, a: Single, b: Single) -> Single:
     """An operator on two scalars."""
+    if op in _FLOATS and isinstance(a, Range):
+        return _FLOATS[op](context, a, b)
     if isinstance(a, Truth):
         assert isinstance(b, Truth)
         return all_of(a, b) if op == "and" else any_of(a, b)
     assert not isinstance(b, Truth)
     if op in COMPARISONS:
         return logic.compare(context, op, a, b)
-    if isinstance(a, Whole):
-        assert isinstance(b, Whole)
-        return whole.binary(op, a, b)
-    assert isinstance(b, Range)
-    match op:
-        case "+":
-            return arithmetic.add(context, a, b)
-        case "-":
-            return arithmetic.subtract(context, a, b)
-        case "*":
-            return arithmetic.multiply(context, a, b)
-        case _:
-            return arithmetic.divide(context, context.table.row("/"), a, b)
+    assert isinstance(a, Whole) and isinstance(b, Whole)
+    return whole.binary(op, a, b)
 
 
-def scalar_builtin(context: Context, op: str, args: tuple[Single, ...]) -> Single:
+def scalar_builtin(context: Context, op: str, *args: Single) -> Single:
     """A built-in that works component by component."""
     if isinstance(args[0], Whole):
         return _whole_builtin(context, op, args)
-    floats = tuple(a for a in args if isinstance(a, Range))
-    if op == "float_to_bits":
-        return whole.float_to_bits(floats[0])
-    if op in _ONE:
-        return _ONE[op](context, floats[0])
-    match op:
-        case "min":
-            return arithmetic.smaller(floats[0], floats[1])
-        case "max":
-            return arithmetic.larger(floats[0], floats[1])
-        case "clamp":
-            return arithmetic.clamp(floats[0], floats[1], floats[2])
-        case "atan2":
-            return elementary.arc_tangent(context, floats[0], floats[1])
-        case "exp" | "exp2":
-            return elementary.exponential(context, op, floats[0])
-        case "log" | "log2":
-            return elementary.logarithm(context, op, floats[0])
-        case "sin" | "cos":
-            return elementary.sine(context, op, floats[0])
-        case _:
-            raise NotImplementedError(f"no interval form of {op}")
+    if op not in _FLOATS:
+        raise NotImplementedError(f"no interval form of {op}")
+    return _FLOATS[op](context, *args)
 
 
-_ONE: dict[str, Callable[[Context, Range], Single]] = {
+_FLOATS: dict[str, Callable[..., Single]] = {
+    "+": arithmetic.add,
+    "-": arithmetic.subtract,
+    "*": arithmetic.multiply,
+    "/": lambda context, a, b: arithmetic.divide(context, context.table.row("/"), a, b),
     "abs": lambda context, x: arithmetic.absolute(x),
     "floor": logic.floor,
     "sqrt": elementary.square_root,
     "inverse_sqrt": elementary.inverse_square_root,
+    "min": lambda context, a, b: arithmetic.smaller(a, b),
+    "max": lambda context, a, b: arithmetic.larger(a, b),
+    "clamp": lambda context, x, least, most: arithmetic.clamp(x, least, most),
+    "atan2": elementary.arc_tangent,
+    "exp": lambda context, x: elementary.exponential(context, "exp", x),
+    "exp2": lambda context, x: elementary.exponential(context, "exp2", x),
+    "log": lambda context, x: elementary.logarithm(context, "log", x),
+    "log2": lambda context, x: elementary.logarithm(context, "log2", x),
+    "sin": lambda context, x: elementary.sine(context, "sin", x),
+    "cos": lambda context, x: elementary.sine(context, "cos", x),
+    "float_to_bits": lambda context, x: whole.float_to_bits(x),
 }
+"""Operations on floats alone that give numbers."""
 
 
 def _whole_builtin(context: Context, op: str, args: tuple[Single, ...]) -> Single:

@@ -24,8 +24,10 @@ from codegen.intervals.values import Single, Truth, Value, Whole
 from codegen.ir.types import BOOL, F32, I32, Scalar, Struct, Type, Vector, leaves
 from codegen.library import Library
 
-CHUNK = 16384
-"""Lanes evaluated together: few enough for the arrays of an operation to stay in the processor's cache."""
+CHUNK = 65536
+"""Lanes evaluated together at most: many, since threads wait for each other between operations."""
+LEAST_CHUNK = 16384
+"""Lanes that are not divided among threads."""
 DEPTH = 6
 """Forks that one lane is followed through; further ones count by their hull."""
 MOST_PARTS = 32
@@ -123,14 +125,15 @@ class _Run:
 
     def each_chunk(self, owner: Array, ways: Ways | None) -> Iterator[tuple[Array, _Found]]:
         """Positions in `owner` and what was found there, in order; some chunks are evaluated at a time."""
-        parts = [np.arange(k, min(k + CHUNK, len(owner))) for k in range(0, len(owner), CHUNK)]
+        at_a_time = threads()
+        size = min(CHUNK, max(LEAST_CHUNK, -(-len(owner) // at_a_time)))
+        parts = [np.arange(k, min(k + size, len(owner))) for k in range(0, len(owner), size)]
 
         def found(part: Array) -> tuple[_Found, CauseBook]:
             chosen = None if ways is None else Ways(ways.forks[part], ways.ways[part])
             with np.errstate(all="ignore"):
                 return self.evaluate(owner[part], chosen)
 
-        at_a_time = threads()
         if len(parts) < 2 or at_a_time < 2:
             results = map(found, parts)
             yield from ((part, self.numbered(*result)) for part, result in zip(parts, results, strict=True))

@@ -146,7 +146,9 @@ _ROW = ("kind", "cite", "assumed", "magnitude", "zero", "normal")
 
 
 def _row(where: str, operation: str, entry: Mapping[str, Any]) -> Row:
-    kind = entry.get("kind")
+    if "kind" not in entry:
+        raise UserError(f"{where}: lacks kind; valid names: {', '.join(sorted(_KINDS))}")
+    kind = entry["kind"]
     if kind not in _KINDS:
         raise UserError(f'{where}: unknown kind "{kind}"{nearest(str(kind), _KINDS)}')
     allowed, needed, make = _KINDS[kind]

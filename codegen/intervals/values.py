@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, field
-from typing import TypeVar, cast
+from typing import TypeVar
 
 import numpy as np
 
@@ -130,9 +130,9 @@ def opposite(a: Truth) -> Truth:
 
 def choose(condition: Truth, if_true: Value, if_false: Value) -> Value:
     """The chosen value where the condition is decided, and the hull of both where it is not."""
-    if if_true is if_false or not condition.false.any():
+    if if_true is if_false or not np.count_nonzero(condition.false):
         return if_true
-    if not condition.true.any():
+    if not np.count_nonzero(condition.true):
         return if_false
     if isinstance(if_true, dict):
         assert isinstance(if_false, dict)
@@ -162,8 +162,9 @@ def _choose(condition: Truth, a: Single, b: Single) -> Single:
 
 def _hull(t: Array, f: Array, a: N, b: N) -> tuple[Array, Array]:
     if isinstance(a, Range) and wanted(len(t)) and not (a.is_point and b.is_point):
-        found = kernels().choose(t, f, *ends(a.low, a.high), *ends(b.low, b.high), len(t))
-        return cast(tuple[Array, Array], found)
+        low, high = np.empty(len(t)), np.empty(len(t))
+        kernels().choose(t, f, *ends(a.low, a.high), *ends(b.low, b.high), low, high)
+        return low, high
     both = t & f
     low = select(t, a.low, b.low)
     if not both.any():

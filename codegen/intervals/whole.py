@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -13,6 +14,8 @@ from codegen.intervals.values import Range, Whole
 _MODULUS = 2**32
 _WITHIN = ("&", "|", "^", ">>")
 """Operators whose exact result is in the type where the operands are."""
+_MASKED = ("*", "<<")
+"""Operators of whose exact result only the low 32 bits are kept."""
 Ends = tuple[Array, Array]
 
 
@@ -20,7 +23,7 @@ def binary(op: str, a: Whole, b: Whole) -> Whole:
     """An operator on two integers."""
     if a.is_point and b.is_point:
         low = _exact(op, a.low, b.low)
-        if op in _WITHIN:
+        if op in _WITHIN or (op in _MASKED and not a.is_signed):
             return Whole(low, low, a.is_signed, first(a.cause, b.cause))
         high = low
     else:
@@ -68,11 +71,11 @@ def _difference(a: Whole, b: Whole) -> Ends:
 
 def _product(a: Whole, b: Whole) -> Ends:
     # Exact in float64 up to 2^53; anything larger wraps anyway and counts as every integer.
-    corners = [x.astype(np.float64) * y.astype(np.float64) for x in (a.low, a.high) for y in (b.low, b.high)]
-    low, high = (
-        np.minimum.reduce(np.broadcast_arrays(*corners)),
-        np.maximum.reduce(np.broadcast_arrays(*corners)),
+    xs, ys = (
+        [end.astype(np.float64) for end in ((v.low,) if v.is_point else (v.low, v.high))] for v in (a, b)
     )
+    corners = [x * y for x in xs for y in ys]
+    low, high = functools.reduce(np.minimum, corners), functools.reduce(np.maximum, corners)
     limit = 2.0**52
     lost = np.maximum(np.abs(low), np.abs(high)) > limit
     low, high = np.where(lost, -limit, low), np.where(lost, limit, high)

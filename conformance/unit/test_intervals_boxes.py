@@ -132,7 +132,7 @@ def evaluated(table: Table, op: str, operands: list[tuple[Array, Array]]) -> Ran
         elif op in "+-*/":
             found = operations.binary(context, op, ranges[0], ranges[1])
         else:
-            found = operations.scalar_builtin(context, op, ranges)
+            found = operations.scalar_builtin(context, op, *ranges)
     assert isinstance(found, Range)
     return found
 

@@ -113,7 +113,7 @@ def test_cause_of_the_first_operand_is_told(op: str) -> None:
     codes = [np.array([code], np.int16) for code in (5, 7, 9)][: 3 if op == "clamp" else 2]
     context = Context(load_table("wgsl"), CauseBook(), 1)
     for operands in ([Range(number, number, c) for c in codes], [Whole(word, word, False, c) for c in codes]):
-        found = operations.scalar_builtin(context, op, tuple(operands))
+        found = operations.scalar_builtin(context, op, *operands)
         assert isinstance(found, Range | Whole) and found.cause is not None
         assert found.cause.tolist() == [5]
 

@@ -101,6 +101,7 @@ def test_numbers_beside_powers_of_two() -> None:
         for ulps in (0.0, 0.5, 1.0, 2.5):
             with np.errstate(over="ignore"):
                 plain = arithmetic.within_ulp(low_end, high_end, ulps, ulps)
-            first, last, look = compiled.kernels().within_ulp(low_end, high_end, ulps, ulps, len(low_end))
+            first, last = np.empty(len(low_end)), np.empty(len(low_end))
+            look = compiled.kernels().within_ulp(low_end, high_end, ulps, ulps, first, last)
             assert not look
             assert np.array_equal(first, plain[0]) and np.array_equal(last, plain[1])

@@ -185,7 +185,7 @@ def test_operation_without_a_form_is_told() -> None:
     context, one = Context(load_table("wgsl"), CauseBook(), 1), np.array([1])
     for x in (Range(one * 1.0, one * 1.0), Whole(one, one, False)):
         with pytest.raises(NotImplementedError, match="no interval form of cbrt"):
-            operations.scalar_builtin(context, "cbrt", (x,))
+            operations.scalar_builtin(context, "cbrt", x)
 
 
 @pytest.mark.parametrize("other", [0, 1])

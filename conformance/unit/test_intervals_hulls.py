@@ -96,7 +96,7 @@ def pairs(found: Whole | Range) -> list[Any]:
 def apply(op: str, a: Whole, b: Whole) -> Whole:
     here = context(len(a.low))
     by_name = op in ("min", "max")
-    found = operations.scalar_builtin(here, op, (a, b)) if by_name else operations.binary(here, op, a, b)
+    found = operations.scalar_builtin(here, op, a, b) if by_name else operations.binary(here, op, a, b)
     assert isinstance(found, Whole)
     return found
 
@@ -176,13 +176,13 @@ def test_clamp_of_integers() -> None:
     x, least, most = (
         wholes(boxes, True) for boxes in ([(-9, 9), (2, 3)], [(0, 1), (4, 5)], [(4, 6), (9, 9)])
     )
-    found = operations.scalar_builtin(context(2), "clamp", (x, least, most))
+    found = operations.scalar_builtin(context(2), "clamp", x, least, most)
     assert isinstance(found, Whole) and found.is_signed
     assert pairs(found) == [(0, 6), (4, 5)]
     for told in ((None, 7, 9), (None, None, 9), (None, 7, None)):
         codes = [None if c is None else np.array([c, c], np.int16) for c in told]
         given = [Whole(w.low, w.high, True, c) for w, c in zip((x, least, most), codes, strict=True)]
-        found = operations.scalar_builtin(context(2), "clamp", tuple(given))
+        found = operations.scalar_builtin(context(2), "clamp", *given)
         assert isinstance(found, Whole) and found.cause is not None
         assert found.cause[0] == next(c for c in told if c)
 

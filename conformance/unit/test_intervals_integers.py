@@ -52,7 +52,7 @@ def wholes(boxes: list[tuple[int, int]], is_signed: bool) -> Whole:
 def apply_whole(op: str, a: Whole, b: Whole, lanes: int) -> Whole:
     here = context(lanes)
     made = (
-        operations.scalar_builtin(here, op, (a, b))
+        operations.scalar_builtin(here, op, a, b)
         if op in ("min", "max")
         else operations.binary(here, op, a, b)
     )

@@ -284,7 +284,7 @@ def test_ordinary_lanes_are_settled_by_a_loop() -> None:
 def test_comparisons_that_have_a_loop(op: str) -> None:
     here, many = context(load_table("wgsl"), True), ordinary()
     far = Range(many.low + 100.0, many.high + 100.0)
-    assert settled(bulk.compare(here, op, many, far)) == (op not in ("==", "!="))
+    assert settled(bulk.compare(here, op, many, far))
     assert bulk.compare(here, op, many, many) is None
     assert here.forks == 0
 

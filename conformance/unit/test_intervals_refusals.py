@@ -31,6 +31,10 @@ SENTENCES = {
         'kind = "zzz"\ncite = "WGSL, Logical',
         f'my.toml: and: unknown kind "zzz"; valid names: {KINDS}',
     ),
+    'kind = "exact"\ncite = "WGSL, bitcast': (
+        'cite = "WGSL, bitcast',
+        f"my.toml: float_to_bits: lacks kind; valid names: {KINDS}",
+    ),
     'edition = "gpuweb/gpuweb da251f90, 2026-08-19"\n': ("", "my.toml: lacks edition"),
     'specification = "WebGPU': (
         'specifications = "WebGPU',
@@ -151,7 +155,7 @@ REFUSED_ROWS = {
     'kind = "scaled"': "lacks epsilons",
     'kind = "inherited"': "lacks formula",
     'kind = "ulp"\nwhole = true': "lacks ulps",
-    "assumed = 'x'": 'unknown kind "None"',
+    "assumed = 'x'": "lacks kind; valid names: ",
     'kind = "ulp"\nulps = 1\nreciprocal = [2, 1]': "reciprocal: needs two numbers in ascending order",
     'kind = "ulp"\nulps = 1\nzero = ["z"]': 'no operand "z"; valid names: a, b',
 }
