@@ -149,6 +149,14 @@ def test_every_operation_is_rounded(tmp_path: Path) -> None:
     assert np.array_equal(got, expected)
 
 
+def test_rules_are_the_librarys_unless_others_are_given(tmp_path: Path) -> None:
+    library = library_of(tmp_path, 'def f(x: X) -> f32:\n    """F."""\n    return x * 1.0e-9\n')
+    rules = HalfRules({(float(np.float32(1.0e-9)), ""): 0.5})
+    assert evaluate(library, "f", {"x": np.array([3.0])}, "float16", rules=rules) == np.array([1.5])
+    with pytest.raises(UserError, match="which halves lose"):
+        evaluate(library, "f", {"x": np.array([3.0])}, "float16")
+
+
 def test_strict_emulation_flushes_and_marks_overflow(tmp_path: Path) -> None:
     library = library_of(tmp_path, 'def f(x: X) -> f32:\n    """F."""\n    return x * x\n')
     x = np.array([1e-3, 0.5, 300.0])

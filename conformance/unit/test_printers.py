@@ -134,11 +134,12 @@ def test_comparisons_among_arguments_open_no_template() -> None:
     """f(a < b, c > (d)) is a template in WGSL; an argument that nothing can close stays bare."""
     a, b = ir.Var(F32, "a"), ir.Var(F32, "b")
     less, more = ir.Binary(BOOL, "<", a, b), ir.Binary(BOOL, ">", a, b)
-    both = ir.Binary(BOOL, "and", more, less)
+    both, either = (ir.Binary(BOOL, op, more, less) for op in ("and", "or"))
     texts = {
         "f((a < b), a > b)": (less, more),
         "f(a > b, a < b)": (more, less),
         "f((a > b && a < b), a > b)": (both, more),
+        "f((a > b || a < b), a > b)": (either, more),
     }
     for wanted, args in texts.items():
         for dialect in ONE_PER_TARGET:

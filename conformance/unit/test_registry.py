@@ -63,6 +63,21 @@ def test_built_in_is_described(row: Op) -> None:
     assert all(name.isidentifier() and name.strip("_") == name for name in row.names)
 
 
+OPERANDS = {
+    **{name: "a b" for name in ("dot", "cross")},
+    **{name: "x y" for name in ("min", "max")},
+    "clamp": "x low high",
+    "atan2": "y x",
+    "lookup": "t uv",
+    "lookup_level": "t uv lod",
+}
+"""What the operands of built-ins with several are called, in their order."""
+
+
+def test_operands_have_their_usual_names() -> None:
+    assert {name: " ".join(op.names) for name, op in BUILTINS.items() if len(op.names) > 1} == OPERANDS
+
+
 def test_a_row_given_twice_is_refused() -> None:
     with pytest.raises(ValueError, match="rows given twice: sqrt"):
         table(BUILTINS["sqrt"], BUILTINS["sqrt"])
