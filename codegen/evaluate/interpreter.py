@@ -58,7 +58,6 @@ def evaluate(
     chosen = find_arithmetic(arithmetic)
     find: Callable[[str], ir.Function] = library.function
     if chosen.is_half:
-        library.function(name)
         versions = half_versions(library, [name], half_rules(library) if rules is None else rules)
         find = {v.function.name: v.function for v in versions}.__getitem__
     function = find(name)
