@@ -1,6 +1,6 @@
 """Lobes on every target: value, density and sampler belong together, and obey physics.
 
-Plan. For each lobe setting of scene_statistics.toml, on the device in float32, at some views or (nightly) all:
+Plan. For each lobe setting of scene_statistics.toml, on the device in float32, at some views, nightly at all:
   integral     the density integrates to 1 over the sphere, by quadrature in a chart of the lobe
   samples      at least 1e6 samples a test follow the density: chi-square, Sidak's correction over all tests
   weights      value l.z / pdf finite and below the documented largest weight, also for the corners of u
