@@ -2,8 +2,8 @@
 
 Seconds for a million points, uniform over the domain: on the wall, with the threads that the evaluator has by
 default or that VAIR_INTERVAL_THREADS gives it, and of processor time, of all threads together. The least of
-some runs each, since other work only adds; on a busy machine the wall says little. Nothing is claimed from it:
-it says where to look.
+some runs each, since other work only adds; on a busy machine the wall says little. Nothing is claimed from
+it: it says where to look.
 """
 
 from __future__ import annotations
