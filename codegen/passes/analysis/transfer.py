@@ -29,8 +29,8 @@ Bound = tuple[Single, ...]
 MOST_REMEMBERED = 200_000
 _memory: dict[Hashable, tuple[Bound, object]] = {}
 
-_INHERITED = ("+", "-", "*", "/", "sqrt", "inverse_sqrt", "dot")
-"""Operations whose accuracy others may inherit."""
+_INHERITED = ("/", "sqrt", "inverse_sqrt", "dot", "length")
+"""Operations whose rows are read for others, which inherit from them."""
 
 
 def remembered(key: Hashable, make: Callable[[], Bound], alive: object = None) -> Bound:
@@ -82,7 +82,7 @@ class Transfer:
                 found = VECTOR_BUILTINS[e.op](context, *cast(tuple[tuple[Range, ...], ...], parts))
                 return found if isinstance(found, tuple) else (found,)
             case ir.Builtin():
-                return self.each(e.op, lambda a: scalar_builtin(context, e.op, a), parts)
+                return self.each(e.op, lambda a: scalar_builtin(context, e.op, *a), parts)
             case ir.Construct() if isinstance(e.type, Array):
                 return tuple(functools.reduce(_either, column) for column in zip(*parts, strict=True))
             case ir.Index():
