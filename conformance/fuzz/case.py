@@ -93,7 +93,18 @@ def _function(
     for argument, t in zip(node.args.args, types, strict=True):
         argument.annotation = ast.parse(_annotation(t), mode="eval").body
     node.returns = ast.parse(returns.name, mode="eval").body
-    return Helper(name, tuple(types), returns), ast.unparse(ast.fix_missing_locations(node))
+    return Helper(name, tuple(types), returns), _text(node)
+
+
+def _text(node: ast.FunctionDef) -> str:
+    """The source of a function made without places in a text, which printing asks of its statements."""
+    open_ends: list[ast.AST] = [node]
+    while open_ends:
+        statement = open_ends.pop()
+        if isinstance(statement, ast.stmt):
+            statement.lineno = 1
+        open_ends += [*getattr(statement, "body", ()), *getattr(statement, "orelse", ())]
+    return ast.unparse(node)
 
 
 def draw_inputs(case: Case, parameters: Any, lanes: int) -> dict[str, Any]:

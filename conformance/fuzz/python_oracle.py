@@ -155,7 +155,8 @@ class _Literals(ast.NodeTransformer):
 
     def visit(self, node: ast.AST) -> Any:
         if isinstance(node, ast.expr) and _is_constant(node) and _has_float(node):
-            return ast.Call(ast.Name("f32", ast.Load()), [node], [])
+            rounding = ast.copy_location(ast.Name("f32", ast.Load()), node)
+            return ast.copy_location(ast.Call(rounding, [node], []), node)
         return super().visit(node)
 
     def visit_ClassDef(self, node: ast.ClassDef) -> Any:
@@ -214,7 +215,7 @@ class _Fields(dict[str, Any]):
 
 def run(text: str, function: Function, inputs: dict[str, Any], lanes: Sequence[int]) -> Value:
     """The values of a function of the text in some lanes of its inputs, in the shapes of codegen.evaluate."""
-    tree = ast.fix_missing_locations(_Literals().visit(ast.parse(text)))
+    tree = _Literals().visit(ast.parse(text))
     namespace: dict[str, Any] = {**NAMESPACE, "structure": structure}
     exec(compile(tree, "random program", "exec"), namespace)
     entry = namespace[function.name]

@@ -53,4 +53,5 @@ class Scope:
 
     def free(self, names: tuple[str, ...]) -> list[str]:
         """Names that can be given here; names of blocks that have ended are free again."""
-        return [n for n in names if n not in self.visible()]
+        taken = self.visible()
+        return [n for n in names if n not in taken]

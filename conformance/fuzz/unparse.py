@@ -63,7 +63,7 @@ def _block(body: tuple[ir.Stmt, ...], indent: str) -> list[str]:
 
 def expression_text(e: ir.Expr) -> str:
     """An expression with the parentheses that Python needs."""
-    return ast.unparse(ast.fix_missing_locations(expression(e)))
+    return ast.unparse(expression(e))
 
 
 def expression(e: ir.Expr) -> ast.expr:
