@@ -4,18 +4,24 @@ Plan.
   counted     every kind of node by class, per component; of a function also what it calls, by cost
   components  constructions, selections of components, operations on vectors that are alike throughout
   transfer    one operation on ranges that are whole numbers, where every table gives the same ends
-  signatures  tables share what they compute of an operation only if they say the same of it
+  signatures  tables share what they compute of an operation only if they say the same of it and of what it
+              inherits from
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import pytest
 
 from codegen.intervals import TABLES, load_table
+from codegen.intervals.accuracy import Scaled, Ulp
+from codegen.intervals.operations import VECTOR_BUILTINS
+from codegen.intervals.values import Range
 from codegen.ir import nodes as ir
 from codegen.ir.domains import Interval
 from codegen.ir.types import BOOL, F32, I32, U32, UVEC2, VEC2, VEC3, VEC4, Type, array_of
@@ -228,11 +234,13 @@ def test_elements_with_another_number_are_other_values() -> None:
     assert (nothing.low, nothing.high) == (0.0, 0.0)
 
 
+INHERITED = ("/", "sqrt", "inverse_sqrt", "dot", "length")
+
+
 def said(name: str, operation: str) -> object:
     """What a table says of an operation, and of what others inherit from."""
     table = load_table(name)
-    inherited = ("+", "-", "*", "/", "sqrt", "inverse_sqrt", "dot")
-    rows = [table.row(op) if op in table.rows else None for op in (operation, *inherited)]
+    rows = [table.row(op) if op in table.rows else None for op in (operation, *INHERITED)]
     told = [None if r is None else (r.accuracy, r.magnitude, r.reciprocal, r.zero, r.normal) for r in rows]
     return table.rounding, table.flush, table.fused, told
 
@@ -245,6 +253,37 @@ def test_tables_share_a_signature_if_they_say_the_same(operation: str) -> None:
     assert found == tuple(t.signature(e) for t in transfer.transfers())
     for (one, a), (other, b) in itertools.combinations(zip(TABLES, found, strict=True), 2):
         assert (a == b) == (said(one, operation) == said(other, operation))
+
+
+ANY_OPERATION: list[tuple[ir.Binary | ir.Builtin, tuple[tuple[float, float], ...]]] = [
+    *((ir.Binary(F32, op, X, Y), ((1.0, 3.0), (2.0, 5.0))) for op in "+-*/"),
+    *((ir.Builtin(F32, op, (X,)), ((1.0, 3.0),)) for op in ("sqrt", "inverse_sqrt", "exp2", "log", "sin")),
+    *((ir.Builtin(F32, op, (X, Y)), ((1.0, 3.0), (2.0, 5.0))) for op in ("atan2", "max")),
+    (ir.Builtin(F32, "dot", (V, W)), ((1.0, 3.0), (2.0, 5.0))),
+    (ir.Builtin(VEC3, "cross", (V, W)), ((1.0, 3.0), (2.0, 5.0))),
+    (ir.Builtin(F32, "length", (V,)), ((1.0, 3.0),)),
+    (ir.Builtin(VEC3, "normalize", (V,)), ((1.0, 3.0),)),
+]
+"""Operations, and the range of each operand's components."""
+
+
+@pytest.mark.parametrize("row", ["+", *INHERITED, "exp2", "cross"])
+def test_tables_that_give_other_ranges_share_no_signature(row: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = load_table("wgsl")
+    looser = replace(usual.row(row), accuracy=Scaled(1000.0) if row in ("dot", "cross") else Ulp(1000.0))
+    changed = replace(usual, name=f"looser {row}", rows={**usual.rows, row: looser})
+    tables = {t.name: t for t in (usual, changed)}
+    monkeypatch.setattr(transfer, "load_table", tables.__getitem__)
+    one, other = (transfer.Transfer(name) for name in tables)
+    for e, ends in ANY_OPERATION:
+        size = 3 if e.op in VECTOR_BUILTINS else 1
+        operands = tuple(tuple(Range(np.array([a]), np.array([b])) for _ in range(size)) for a, b in ends)
+        tight, loose = (ends_of(t.computed(e, operands)) for t in (one, other))
+        assert tight == loose or one.signature(e) != other.signature(e)
+
+
+def ends_of(found: Sequence[object]) -> list[tuple[float, float]]:
+    return [(float(s.low[0]), float(s.high[0])) for s in found if isinstance(s, Range)]
 
 
 def test_what_is_remembered_is_made_once_and_not_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
