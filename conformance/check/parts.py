@@ -1,7 +1,8 @@
 """Library functions that public functions do not show: parts of pictures, beside their formulas in float64.
 
 `vair check` looks at public functions and at what these call. What only hosts put together is held to its
-documented formula here, and so is what a caller hides: by a limit of its own, or by no promise there.
+documented formula here, and so is what a caller hides, by a limit of its own or by no promise there, and what
+a wide bound hides.
 """
 
 from __future__ import annotations
@@ -86,11 +87,16 @@ def _ggx_visible_area(x: Mapping[str, Any]) -> Array:
     return np.asarray(x["w"][:, 2] + np.hypot(across, x["w"][:, 2]))
 
 
+def _fur_directional_attenuation_mean(x: Mapping[str, Any]) -> Array:
+    return np.asarray(0.5 * x["rho_reflect"] + 0.5 * x["rho_transmit"])
+
+
 HIDDEN: Mapping[str, Formula] = {
     "across_share": _across_share,
     "ggx_visible_area": _ggx_visible_area,
+    "fur_directional_attenuation_mean": _fur_directional_attenuation_mean,
 }
-"""Function that is called -> its formula."""
+"""Another function -> its formula."""
 ALONE: Mapping[str, Formula] = {
     "thinned": _thinned,
     "coat_shadow": _coat_shadow,

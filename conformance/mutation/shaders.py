@@ -62,7 +62,10 @@ def callers() -> dict[str, list[str]]:
 
 
 def public_users(name: str, limit: int) -> list[str]:
-    """The public functions that reach a function, nearest first; the function itself if it is public."""
+    """The public functions that reach a function, the function itself if it is public.
+
+    The nearest first, and of those with the fewest parameters first, in which most of it shows.
+    """
     public = load_library().documented
     found: list[str] = []
     waiting, seen = [name], {name}
@@ -70,11 +73,15 @@ def public_users(name: str, limit: int) -> list[str]:
         current = waiting.pop(0)
         if current in public:
             found.append(current)
-        for caller in callers().get(current, ()):
+        for caller in sorted(callers().get(current, ()), key=_number_of_parameters):
             if caller not in seen:
                 seen.add(caller)
                 waiting.append(caller)
     return found[:limit]
+
+
+def _number_of_parameters(name: str) -> int:
+    return len(load_library().function(name).parameters)
 
 
 @functools.lru_cache(maxsize=64)
