@@ -5,6 +5,7 @@ formed BEFORE any normalisation: a component of a cross product then carries one
 Vectors have shape (N, 3), scalars (N,).
 """
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -33,13 +34,19 @@ def stack(*components: npt.ArrayLike) -> Array:
     return np.stack(np.broadcast_arrays(*(real(c) for c in components)), axis=-1)
 
 
+def total(x: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Sum of a vector's components, first component first."""
+    # NumPy reduces a short last axis several times as slowly, to the same bits.
+    return functools.reduce(np.add, (x[..., k] for k in range(x.shape[-1])))
+
+
 def length(x: npt.ArrayLike) -> Array:
     """Euclidean length; the largest component is factored out, so nothing over- or underflows."""
     x = real(x)
-    scale = np.max(np.abs(x), axis=-1)
+    scale = functools.reduce(np.maximum, (np.abs(x[..., k]) for k in range(x.shape[-1])))
     safe = np.where(scale > 0.0, scale, 1.0)
     y = x / safe[..., None]
-    return np.asarray(safe * np.sqrt(np.sum(y * y, axis=-1)) * (scale > 0.0), dtype=np.float64)
+    return np.asarray(safe * np.sqrt(total(y * y)) * (scale > 0.0), dtype=np.float64)
 
 
 def unit(x: npt.ArrayLike) -> Array:
@@ -93,7 +100,7 @@ def frame_tangent_and_bitangent(n: npt.ArrayLike) -> tuple[Array, Array]:
 
 def mirror(v: Array, h: Array) -> Array:
     """2 (v.h) h - v for float64 directions."""
-    return np.asarray(2.0 * np.sum(v * h, axis=-1, keepdims=True) * h - v, dtype=np.float64)
+    return np.asarray(2.0 * column(total(v * h)) * h - v, dtype=np.float64)
 
 
 def power(base: npt.ArrayLike, exponent: npt.ArrayLike) -> Array:

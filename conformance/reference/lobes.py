@@ -20,6 +20,7 @@ from conformance.reference.exact import (
     length,
     power_of_one_minus,
     real,
+    total,
     unit,
 )
 from conformance.reference.lobes_half import around, cosine_direction, lit, radial_defect
@@ -47,7 +48,7 @@ def mirrored(v: Array) -> Array:
 
 def phong_power(l: Array, v: Array, exponent: Array) -> Array:
     """(l.r)^p, 0 for l.r <= 0 also at p = 0; 1 - l.r = |l - r|^2 / 2."""
-    q = np.sum((unit(l) - mirrored(v)) ** 2, axis=-1) / 2.0
+    q = total((unit(l) - mirrored(v)) ** 2) / 2.0
     return np.where(q < 1.0, power_of_one_minus(q, exponent), 0.0)
 
 
@@ -112,7 +113,7 @@ def half_density(*exponents: str) -> Callable[[Inputs], Mask]:
 
 def phong_edge(inputs: Inputs) -> Mask:
     """l.r is zero within rounding and the exponent below 1: 0 on one side, nearly 1 on the other."""
-    cosine = np.abs(np.sum(unit(inputs["l"]) * mirrored(inputs["v"]), axis=-1))
+    cosine = np.abs(total(unit(inputs["l"]) * mirrored(inputs["v"])))
     return np.asarray((real(inputs["exponent"]) < 1.0) & (cosine <= 1e-6), dtype=np.bool_)
 
 

@@ -9,7 +9,7 @@ directions by 1 / (4 |v.h|); of h and -h the sampler drew the upper one.
 import numpy as np
 import numpy.typing as npt
 
-from conformance.reference.exact import Array, mirror, real, stack, unit
+from conformance.reference.exact import Array, mirror, real, stack, total, unit
 from conformance.reference.sampling import hemisphere_cosine
 
 TINY = 1e-300
@@ -21,7 +21,7 @@ def upper_half(l: Array, v: Array) -> tuple[Array, Array]:
     """The half vector turned to the upper side, and |v.h|; for l = -v the x axis, and NO_HALF."""
     # in extended precision, because the directions may be nearly opposite
     g = np.asarray(extended_unit(l) + extended_unit(v), dtype=np.float64)
-    square = np.sum(g * g, axis=-1)
+    square = total(g * g)
     h = np.where((square > 0.0)[..., None], unit(g), np.array([1.0, 0.0, 0.0]))
     h = np.where(h[..., 2:] < 0.0, -h, h)
     # v.(l + v) = 1 + l.v = |l + v|^2 / 2, so v.h = |l + v| / 2
@@ -31,12 +31,12 @@ def upper_half(l: Array, v: Array) -> tuple[Array, Array]:
 def extended_unit(w: Array) -> npt.NDArray[np.longdouble]:
     """Direction of a float32 vector with the digits of the platform's long double."""
     wide = np.asarray(w, dtype=np.longdouble)
-    return np.asarray(wide / np.sqrt(np.sum(wide * wide, axis=-1, keepdims=True)), dtype=np.longdouble)
+    return np.asarray(wide / np.sqrt(total(wide * wide))[..., None], dtype=np.longdouble)
 
 
 def height_power(h: Array, exponent: Array) -> Array:
     """h.z^exponent for an upper unit vector, from the small one of its two parts; exponent 0 gives 1."""
-    flat = np.sum(h[..., :2] ** 2, axis=-1)
+    flat = total(h[..., :2] ** 2)
     steep = flat < 0.5
     low = np.log(np.where(h[..., 2] > 0.0, h[..., 2], 1.0))
     logarithm = np.where(steep, 0.5 * np.log1p(-np.where(steep, flat, 0.0)), low)
@@ -122,7 +122,7 @@ def ward_sample(u: Array, v: Array, alpha_x: Array, alpha_y: Array) -> Array:
 
 def shirley_exponent(h: Array, exponent_x: Array, exponent_y: Array) -> Array:
     """nx cos^2 phi + ny sin^2 phi of the azimuth of h; 0 for h along the normal."""
-    flat = np.sum(h[..., :2] ** 2, axis=-1)
+    flat = total(h[..., :2] ** 2)
     weighted = real(exponent_x) * h[..., 0] ** 2 + real(exponent_y) * h[..., 1] ** 2
     return np.where(flat > 0.0, weighted / np.where(flat > 0.0, flat, 1.0), 0.0)
 
