@@ -81,7 +81,7 @@ class Context:
         return mark(codes, where, self.book.code(cause))
 
     def decided(self) -> None:
-        """A fork that no lane has."""
+        """A fork that no lane has, or that was met before: forks have the same numbers for all lanes."""
         self.forks += 1
 
     def fork(self, widths: Array) -> Array | None:

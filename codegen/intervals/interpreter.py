@@ -16,7 +16,8 @@ from codegen.evaluate.textures import as_map
 from codegen.intervals import logic, whole
 from codegen.intervals.context import Context
 from codegen.intervals.lookups import lookup
-from codegen.intervals.operations import VECTOR_BUILTINS, binary, scalar_builtin, unary
+from codegen.intervals.memory import FORKS
+from codegen.intervals.operations import COMPARISONS, VECTOR_BUILTINS, binary, scalar_builtin, unary
 from codegen.intervals.values import (
     Range,
     Single,
@@ -37,6 +38,8 @@ from codegen.library import Library
 Singles = tuple[Single, ...]
 V = TypeVar("V")
 ALWAYS, NEVER = always(True), always(False)
+FORKING = frozenset((*FORKS, *COMPARISONS))
+"""Operations that count as a fork whenever they are asked for: a fork has one number for all lanes."""
 
 
 class Frame:
@@ -85,16 +88,19 @@ class Frame:
         return active if self.returned is NEVER else all_of(active, opposite(self.returned))
 
     def loop(self, s: ir.For, active: Truth) -> None:
-        """All iterations that any lane may run."""
+        """All iterations that any lane may run, and one at least; forks count as if all had run."""
         limit = None if s.limit is None else self.expr(s.limit)
         assert limit is None or isinstance(limit, Whole)
-        stop = s.stop if limit is None else min(s.stop, int(limit.high.max()))
+        stop = s.stop if limit is None else min(s.stop, max(s.start + 1, int(limit.high.max())))
         signed = s.index_type == I32
+        first = self.context.forks
         for i in range(s.start, stop):
             key = ("i32", i) if signed else ("u32", "int", i, str(i))
             self.scope[s.name] = self.shared(key, functools.partial(constant, i, signed))
             running = ALWAYS if limit is None else Truth(limit.high > i, limit.low <= i)
             self.block(s.body, all_of(active, running))
+        run = max(stop - s.start, 1)
+        self.context.forks += (self.context.forks - first) // run * (s.stop - s.start - run)
 
     def truth(self, e: ir.Expr) -> Truth:
         value = self.expr(e)
@@ -183,6 +189,8 @@ class Frame:
         if found is None:
             context.operation = op
             return cast(V, context.memory.keep(key, apply(context, op, *parts)))
+        if op in FORKING:
+            context.decided()
         return found
 
     def builtin(self, e: ir.Builtin) -> Value:
@@ -226,6 +234,7 @@ class Frame:
             assert isinstance(a, Whole)
             if type_ == F32:
                 return logic.to_float(context, a)
+            context.decided()
             return reinterpreted(a, type_ == I32)
 
         return self.once(f"{type_.name}()", apply, (cast(Single, value),))

@@ -85,6 +85,7 @@ def floor(context: Context, x: Range) -> Range:
     """floor(x); lanes that may reach several integers fork."""
     low = np.floor(x.low)
     if x.is_point:
+        context.decided()
         return Range(low, low, x.cause)
     high = np.floor(x.high)
     if x.cause is None and (low == high).all():
@@ -104,8 +105,7 @@ def to_integer(context: Context, x: Range, is_signed: bool) -> Whole:
         x.cause, over if x.cause is None else over & (x.cause == 0), "x", "outside the integers of the type"
     )
     if codes is None and (x.is_point or (low == high).all()):
-        if not x.is_point:
-            context.decided()
+        context.decided()
         exact = low.astype(np.int64)
         return Whole(exact, exact, is_signed)
     if codes is not None:
