@@ -13,9 +13,9 @@ import click
 from codegen.backends import open_runtime
 from codegen.commands.progress import progress
 from codegen.errors import UserError
+from codegen.evaluate.pages import hold_freed
 from codegen.files import write_folder
 from codegen.library import Library, load_library
-from codegen.lines import linemap
 from codegen.scene.build import Builder, Outcome, TargetResult
 from codegen.scene.description.document import read_scene
 from codegen.scene.report.markdown import as_markdown, summary
@@ -45,6 +45,7 @@ def command(scene_file: Path, output: Path, no_drivers: bool, no_timing: bool, m
     for folder in (output, maps):
         if folder is not None and folder.exists() and not folder.is_dir():
             raise UserError(f'cannot write to "{folder}": it is a file')
+    hold_freed()
     runtimes: dict[str, Any] = {}
     for target in scene.dialects:
         runtimes[target] = NO_DRIVERS if no_drivers else _runtime(target)
@@ -63,6 +64,8 @@ def command(scene_file: Path, output: Path, no_drivers: bool, no_timing: bool, m
 
 def line_map(library: Library, outcome: Outcome, result: TargetResult) -> str:
     """The line map of a target's file as JSON."""
+    from codegen.lines import linemap  # few ask for it
+
     dialect, _, defined = included(library, outcome.scene, outcome.general, result.reduced)
     return linemap.as_json(linemap.map_of(dialect, result.text, defined))
 

@@ -13,9 +13,15 @@ import numpy.typing as npt
 Array = npt.NDArray[Any]
 CHUNK = 32 * 2**20
 """Bytes that are asked for at once."""
-LEAST = 2**16
+LEAST = 2**14
 """Bytes from which on an array is moved."""
 ALIGNED = 64
+
+
+def hold_freed() -> None:
+    """Let what is freed be used again: an allocator like glibc's gives large blocks back to the system until
+    it has seen a larger one come and go, which costs nothing where that is never touched."""
+    np.empty(CHUNK - 2**16, np.uint8)
 
 
 class Pages:

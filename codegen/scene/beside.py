@@ -40,6 +40,11 @@ def in_turn_beside(
     return one, two, three
 
 
+def each_beside(works: Sequence[Callable[[], Result]], *, forked: bool) -> Sequence[Callable[[], Result]]:
+    """The same for any number of works of one kind."""
+    return _in_turn(works, forked) if works else ()
+
+
 def _in_turn(works: Sequence[Callable[[], Any]], forked: bool) -> Sequence[Callable[[], Any]]:
     if not forked or "fork" not in multiprocessing.get_all_start_methods() or os.cpu_count() == 1:
         return works

@@ -23,7 +23,7 @@ from codegen.passes.analysis.operations import operations
 from codegen.passes.probe import operations_left
 from codegen.passes.specialise import Specialised
 from codegen.scene import environment
-from codegen.scene.beside import beside, in_turn_beside
+from codegen.scene.beside import beside, each_beside, in_turn_beside
 from codegen.scene.description.document import Scene
 from codegen.scene.description.lights import UNROLLED
 from codegen.scene.environment import ConstantLight, MapError
@@ -34,8 +34,8 @@ from codegen.scene.proof.proof import Proof, Results, prove
 from codegen.scene.reduction.knowledge import Given, Knowledge
 from codegen.scene.reduction.prices import Prices
 from codegen.scene.reduction.reduce import Chosen, Reduced, Reducer
-from codegen.scene.report import spirv, stopwatch, text
-from codegen.scene.report.stopwatch import Speed
+from codegen.scene.report import spirv, text
+from codegen.scene.report.speed import Speed
 
 SEARCH_POINTS = 12_000
 PROOF_POINTS = 100_000
@@ -157,10 +157,8 @@ class Builder:
         if self.scene.budget > 0.0:
             chosen = reducer.chosen(prices, self.scene.budget)
         forked = chosen is not None and not self.executed
-        following = {
-            target: beside(partial(self.apart, library, reducer, target, chosen), forked=forked)
-            for target in others
-        }
+        searches = [partial(self.apart, library, reducer, target, chosen) for target in others]
+        following = dict(zip(others, each_beside(searches, forked=forked), strict=True))
         reduced = reducer.reduced(prices, self.scene.budget, chosen)
         left = beside(partial(self.remaining, library, reduced), forked=not self.executed)
         proven, exact, single, error = ahead()
@@ -299,6 +297,8 @@ class Builder:
                 self.counting.close()
             self.counting = spirv.Counting(text.spirv_texts(library, self.scene, general, reduced))
         if runtime is not None and self.timed and final_proof.holds(self.scene.budget):
+            from codegen.scene.report import stopwatch  # not without a driver
+
             self.say(f"timing on {target}")
             extended = library.with_functions([reduced.final.function])
             names = [name, reduced.final.function.name]

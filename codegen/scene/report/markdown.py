@@ -8,7 +8,7 @@ from typing import Any
 
 from codegen.ir.domains import number
 from codegen.scene.description.document import HALF_STEP
-from codegen.scene.report.stopwatch import CHAINS, ROUNDS
+from codegen.scene.report.speed import CHAINS, ROUNDS
 
 MOVING = ("scalars",)
 """Passes that compute nothing; their steps are counted but not listed."""

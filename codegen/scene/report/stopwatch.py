@@ -13,7 +13,6 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -26,26 +25,15 @@ from codegen.execute import Words, flatten
 from codegen.ir import nodes as ir
 from codegen.ir.types import F32, I32, Array, Scalar, Type, Vector, leaves
 from codegen.library import Library
+from codegen.scene.report.speed import CHAINS, ROUNDS, Speed
 from codegen.thread_times import cpu_seconds, threads
 
 SOFTWARE = ("llvmpipe", "lavapipe", "softpipe", "swiftshader", "pocl", "portable computing", "pthread", "cpu")
-CHAINS = 4
 LANES, FLAT_LANES = 512, 1 << 14
 LAUNCH_SECONDS = 1e-2
 MOST_STEPS = 1 << 14
-ROUNDS = 9
 SHARE = 0.1
 """A thread with at least this share of the process's work computes."""
-
-
-@dataclass(frozen=True)
-class Speed:
-    """Nanoseconds of one evaluation above its baseline: median and quartiles; seconds that building took."""
-
-    ns: float
-    low: float
-    high: float
-    build_seconds: float
 
 
 def measure(

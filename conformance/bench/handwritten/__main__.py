@@ -15,7 +15,7 @@ from rich.table import Table
 from codegen.backends import TARGETS
 from codegen.errors import UserError
 from codegen.library import load_library
-from codegen.scene.report.stopwatch import CHAINS, ROUNDS
+from codegen.scene.report.speed import CHAINS, ROUNDS
 from conformance.bench.handwritten import record
 from conformance.bench.handwritten.beside import BY_HAND, FIXED, POINTS, Row, rows
 from conformance.bench.record import machine_data
