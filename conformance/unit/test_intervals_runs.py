@@ -275,6 +275,34 @@ def test_lanes_do_not_depend_on_each_other(
         assert one.cause(0) == every.cause(k) == back.cause(len(x) - 1 - k)
 
 
+FORKS_BETWEEN = {
+    "a value met again": "y = x if z > 0.0 else 0.5 - x\n    a = floor(x) + floor(y)",
+    "a known number": "y = 3.0 if z > 0.0 else x * 0.7\n    a = floor(y)",
+    "a known integer": "y = i32(3.5 if z > 0.0 else x * 0.7)\n    a = f32(y)",
+    "iterations": "a = 0.0\n    for i in range(min(n, 4)):\n        a += floor(x + f32(i) * 0.7)",
+}
+"""Of the first lane alone there are fewer forks than of both: it has no second value, number or iteration."""
+
+
+@pytest.mark.parametrize("between_forks", FORKS_BETWEEN)
+def test_forks_are_those_of_the_lane(between_forks: str, tmp_path: Path) -> None:
+    """A way is taken at the fork that it was told for, whichever lanes are evaluated beside it."""
+    text = f"""def probe(x: X, z: X, t: X, u: X, n: {U32}) -> f32:
+    {FORKS_BETWEEN[between_forks]}
+    side = 0.0 if t + 1.0e-8 > 1.0 else 10.0
+    steps = floor((u + 1.0e-8) * 1.0e8)
+    return a + side + steps
+"""
+    library = library_of(tmp_path, text)
+    lanes = {"x": [0.25] * 2, "z": [1.0, -1.0], "t": [1.0, 4.0], "u": [0.5, 4.0]}
+    inputs: dict[str, Any] = {name: np.array(values, np.float32) for name, values in lanes.items()}
+    inputs["n"] = np.array([1, 2], np.uint32)
+    both: Any = permitted(library, "probe", inputs, "wgsl")
+    for lane in (0, 1):
+        alone: Any = permitted(library, "probe", {n: v[lane : lane + 1] for n, v in inputs.items()}, "wgsl")
+        assert both.low[lane] == alone.low[0] and both.high[lane] == alone.high[0]
+
+
 def test_causes_by_frequency() -> None:
     causes = tuple(Cause("f", line, "/", "y", "why") for line in (1, 2, 3, 4))
     zero = np.zeros(7)
