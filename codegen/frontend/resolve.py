@@ -77,8 +77,8 @@ class Resolver:
         if module not in self._files:
             path, shown = self._paths[module]
             file = parse_file(path, module, shown)
-            for source, name in file.imports.values():
-                self._check_import(file, source, name)
+            for local, (source, name) in file.imports.items():
+                self._check_import(file, file.import_nodes[local], source, name)
             self._files[module] = file
         return self._files[module]
 
@@ -87,8 +87,7 @@ class Resolver:
         for module in self._paths:
             self.file(module)
 
-    def _check_import(self, file: SourceFile, module: str, name: str) -> None:
-        node = next(n for local, n in file.import_nodes.items() if file.imports[local] == (module, name))
+    def _check_import(self, file: SourceFile, node: ast.AST, module: str, name: str) -> None:
         if module == LANG:
             if name not in LANG_NAMES:
                 raise file.error(node, f'{LANG} defines no "{name}"{nearest(name, LANG_NAMES)}')

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from codegen.errors import Place, SourceError, UserError
@@ -33,12 +34,15 @@ class SourceFile:
         parts = self.module.split(".")
         return parts[1] if len(parts) > 2 else ""
 
+    @cached_property
+    def _lines(self) -> list[str]:
+        return self.text.splitlines()
+
     def place(self, node: ast.AST) -> Place:
         """Where a node stands."""
         line = getattr(node, "lineno", 1)
         column = getattr(node, "col_offset", 0)
-        lines = self.text.splitlines()
-        text = lines[line - 1] if 0 < line <= len(lines) else ""
+        text = self._lines[line - 1] if 0 < line <= len(self._lines) else ""
         return Place(self.shown_path, line, column + 1, text)
 
     def error(self, node: ast.AST, sentence: str) -> SourceError:
