@@ -19,7 +19,7 @@ from codegen.ir.types import I32, TEXTURE, Struct, Type
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Const:
     """A literal; a float is already rounded to float32."""
 
@@ -28,7 +28,7 @@ class Const:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Var:
     """A parameter or a local."""
 
@@ -37,7 +37,7 @@ class Var:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Unary:
     """`-`, `~` or `not`."""
 
@@ -47,7 +47,7 @@ class Unary:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Binary:
     """An operator of codegen.ops, named as in the source (`+`, `and`, `<`)."""
 
@@ -58,7 +58,7 @@ class Binary:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Builtin:
     """A built-in of the op registry."""
 
@@ -68,7 +68,7 @@ class Builtin:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Call:
     """A call of a library function."""
 
@@ -78,7 +78,7 @@ class Call:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Construct:
     """A vector from scalars (one: splat) or shorter vectors, a struct or an array from its parts in order."""
 
@@ -87,7 +87,7 @@ class Construct:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Convert:
     """A conversion between scalar number types: exact or rounded; to integers truncating."""
 
@@ -96,7 +96,7 @@ class Convert:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Member:
     """A field of a struct value."""
 
@@ -106,7 +106,7 @@ class Member:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Swizzle:
     """Components of a vector, read only; one letter gives a scalar."""
 
@@ -116,7 +116,7 @@ class Swizzle:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Index:
     """An element of an array by an i32 or u32 that is one of its numbers."""
 
@@ -126,7 +126,7 @@ class Index:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Select:
     """`if_true if condition else if_false`; both sides are evaluated."""
 
@@ -140,7 +140,7 @@ Expr = Const | Var | Unary | Binary | Builtin | Call | Construct | Convert | Mem
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Let:
     """The first assignment of a local; `mutable` where it is assigned again."""
 
@@ -151,7 +151,7 @@ class Let:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Assign:
     """A later assignment."""
 
@@ -161,7 +161,7 @@ class Assign:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class If:
     """A branch on a scalar condition."""
 
@@ -172,7 +172,7 @@ class If:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class For:
     """`for name in range(start, stop)` with constant bounds; name is an i32.
 
@@ -193,7 +193,7 @@ class For:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Return:
     """The function's value."""
 

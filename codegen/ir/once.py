@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any, TypeVar
 
 Node = TypeVar("Node")
 
 
 def hashed_once(kind: type[Node]) -> type[Node]:
-    """A frozen dataclass whose objects remember their hash: trees are keys, and share parts."""
-    plain: Callable[[Node], int] = kind.__hash__
-    same: Callable[[Node, object], bool] = kind.__eq__
-    fields = tuple(kind.__dataclass_fields__)  # type: ignore[attr-defined]
+    """A frozen dataclass, made without comparison: objects are equal where their compared fields are, and
+    remember their hash. Trees are keys, and share parts."""
+    known_fields = kind.__dataclass_fields__  # type: ignore[attr-defined]
+    fields = tuple(known_fields)
+    compared = [name for name, field in known_fields.items() if field.compare]
+    content: Callable[[Node], object] = attrgetter(*compared)
 
     def hashed(self: Node) -> int:
         known: dict[str, Any] = self.__dict__
         if "_hash" not in known:
-            known["_hash"] = plain(self)
+            known["_hash"] = hash(content(self))
         found: int = known["_hash"]
         return found
 
     def equal(self: Node, other: object) -> bool:
-        return self is other or same(self, other)
+        if self is other:
+            return True
+        return content(self) == content(other) if other.__class__ is self.__class__ else NotImplemented
 
     def state(self: Node) -> dict[str, Any]:
         """What another process may know: hashes of texts differ from process to process."""

@@ -9,7 +9,7 @@ from codegen.ir.once import hashed_once
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scalar:
     """A 32-bit scalar (bool: a truth value), or the 16-bit float f16."""
 
@@ -17,7 +17,7 @@ class Scalar:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Vector:
     """A short vector; `name` as in the source (vec3, uvec2)."""
 
@@ -27,7 +27,7 @@ class Vector:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Field:
     """One field of a struct."""
 
@@ -37,7 +37,7 @@ class Field:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Struct:
     """A struct; two structs are the same type if their names and fields agree."""
 
@@ -50,7 +50,7 @@ class Struct:
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Array(Struct):
     """`size` values of one scalar or vector type, told apart by a number: a struct with the fields 0, 1, ...
 
@@ -67,7 +67,7 @@ class Array(Struct):
 
 
 @hashed_once
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Texture:
     """A handle of a map with its sampler: only a parameter has it, and only lookups and calls take it."""
 
