@@ -25,9 +25,13 @@ SLOPE = 1e-6
 """Step along the height in which a curve is followed."""
 SHORT = 0.05
 """Vectors and ways below this have a direction that a step says too little of."""
-NEAR = {"shell_tangent": 1e-4, "across_share": 1e-8}
+NEAR = {"shell_tangent": 1e-4, "across_share": 1e-8, "turn_of": 3e-9}
 """Distance from the formula: of a derivative from a difference quotient, of an angle from a polynomial."""
+RELATIVE = ("ggx_visible_area",)
+"""Whose distance is a share of what the formula gives."""
 USUAL = 1e-9
+SMALLEST_AREA = float(np.float32(1e-20))
+"""The least area that the library gives, as it holds the number."""
 
 
 def _value(name: str, **inputs: Any) -> Array:
@@ -77,14 +81,19 @@ def _unit(v: Array) -> Array:
     return np.asarray(np.where(length > SHORT, v / np.maximum(length, SHORT), np.nan))
 
 
+def _turn_of(x: Mapping[str, Any]) -> Array:
+    return np.asarray(np.arctan2(x["y"] + 0.0, x["x"] + 0.0) / (2.0 * np.pi))  # no negative zeros
+
+
 def _across_share(x: Mapping[str, Any]) -> Array:
-    y, z = x["w"][:, 1] + 0.0, x["w"][:, 2] + 0.0  # no negative zeros
-    return np.asarray(np.clip(np.arctan2(y, z) / np.pi + 0.5, 0.0, 1.0))
+    return np.asarray(np.clip(0.5 + 2.0 * _turn_of({"y": x["w"][:, 1], "x": x["w"][:, 2]}), 0.0, 1.0))
 
 
 def _ggx_visible_area(x: Mapping[str, Any]) -> Array:
-    across = np.hypot(x["alpha_x"] * x["w"][:, 0], x["alpha_y"] * x["w"][:, 1])
-    return np.asarray(x["w"][:, 2] + np.hypot(across, x["w"][:, 2]))
+    """w.z + |stretched w|; the difference of the two by that of their squares."""
+    across, height = np.hypot(x["alpha_x"] * x["w"][:, 0], x["alpha_y"] * x["w"][:, 1]), x["w"][:, 2]
+    total = np.hypot(across, height) + np.abs(height)
+    return np.asarray(np.maximum(np.where(height >= 0.0, total, across**2 / total), SMALLEST_AREA))
 
 
 def _fur_directional_attenuation_mean(x: Mapping[str, Any]) -> Array:
@@ -92,6 +101,7 @@ def _fur_directional_attenuation_mean(x: Mapping[str, Any]) -> Array:
 
 
 HIDDEN: Mapping[str, Formula] = {
+    "turn_of": _turn_of,
     "across_share": _across_share,
     "ggx_visible_area": _ggx_visible_area,
     "fur_directional_attenuation_mean": _fur_directional_attenuation_mean,
@@ -135,7 +145,7 @@ def passes(library: Library, name: str) -> bool:
         }
         got = np.asarray(evaluate(library, name, exact, "float64"))
         wanted = PARTS[name](exact)
-        off = np.abs(got - wanted)
+        off = np.abs(got - wanted) / (np.abs(wanted) if name in RELATIVE else 1.0)
         if not np.isfinite(got).all() or (off[~np.isnan(off)] > NEAR.get(name, USUAL)).any():
             return False
     return True

@@ -311,6 +311,7 @@ def test_causes_by_frequency() -> None:
     assert Permitted(zero, zero, np.array([2, 2, 0, 0, 0, 0, 0], np.int16), causes).histogram() == {
         causes[1]: 2
     }
+    assert Permitted(zero, zero, np.zeros(7, np.int16), ()).histogram() == {}
     assert found.guaranteed.tolist() == [False, False, False, True, False, False, False]
     assert found.cause(3) == "" and found.cause(0) == str(causes[1]) and found.cause(6) == str(causes[0])
 
