@@ -5,6 +5,8 @@ Plan.
   forms   sums, products, a number of the iteration, a value that is carried and used, a branch inside, an
           assigned local, what is the same in every iteration, a call: whatever is taken apart and what is not
   apart   which of these loops are taken apart
+  lanes   where a parameter ends a loop, every lane runs as often as its own number says, also in a branch and
+          where some have returned
 """
 
 from __future__ import annotations
@@ -100,3 +102,46 @@ def test_forms_of_loops(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, form: s
     inputs = {name: generator.uniform(-4.0, 8.0, COUNT).astype(np.float32) for name in "xy"}
     one, other = both(monkeypatch, library, "probe", inputs, memory)
     assert one == other
+
+
+LANES = """def f(x: X, n: u32, inside: bool) -> f32:
+    total = x
+    for i in range(min(n, 6)):
+        total = total * 2.0 + f32(i)
+        if total > 50.0:
+            return -total
+    if inside:
+        for i in range(min(n, 3)):
+            total = total + f32(i) + 0.5
+        for k in range(2):
+            total = total - f32(k) * x
+    return total
+
+
+"""
+
+
+def one_lane(x: float, n: int, inside: bool) -> float:
+    """What LANES says, as Python says it; its numbers are exact."""
+    total = x
+    for i in range(min(n, 6)):
+        total = total * 2.0 + i
+        if total > 50.0:
+            return -total
+    if inside:
+        for i in range(min(n, 3)):
+            total += i + 0.5
+        for k in range(2):
+            total -= k * x
+    return total
+
+
+def test_each_lane_runs_as_often_as_its_own_number_says(tmp_path: Path) -> None:
+    library = library_of(tmp_path, LANES)
+    lanes = [(x, n, inside) for x in (-1.0, 0.5, 3.0) for n in range(9) for inside in (False, True)]
+    x, n, inside = (np.array(column) for column in zip(*lanes, strict=True))
+    inputs = {"x": x.astype(np.float32), "n": n.astype(np.uint32), "inside": inside}
+    expected = [one_lane(*lane) for lane in lanes]
+    assert len(set(expected)) > len(lanes) // 3
+    for memory in (None, Memory()):
+        np.testing.assert_array_equal(np.asarray(evaluate(library, "f", inputs, memory=memory)), expected)
