@@ -1,5 +1,6 @@
 """Fixtures for tests that need a device; and what all test runs share."""
 
+import atexit
 import gc
 from collections.abc import Generator
 
@@ -14,19 +15,16 @@ def pytest_collection() -> Generator[None, object, object]:
     """Collect without looking for garbage, and never look at what was collected.
 
     Thousands of tests and the modules behind them stay to the end; searching them again and again for circles
-    that nobody holds takes a good part of a run.
+    that nobody holds takes a good part of a run. At exit all is given back: some libraries count their
+    objects then, and report what is left.
     """
     gc.disable()
+    atexit.register(gc.unfreeze)
     try:
         return (yield)
     finally:
         gc.freeze()
         gc.enable()
-
-
-def pytest_unconfigure() -> None:
-    """Give everything back at the end: some libraries count their objects and report what is left."""
-    gc.unfreeze()
 
 
 @pytest.fixture(scope="session", params=TARGETS)
