@@ -122,6 +122,7 @@ COUNT = 3
         ("n & MASK", ir.Binary(U32, "&", N, ir.Const(U32, 0x55555555))),
         ("MASK", ir.Const(U32, 0x55555555)),
         ("MASK + 1", ir.Const(U32, 0x55555556)),
+        ("MASK + COUNT ** 0", ir.Const(U32, 0x55555556)),
         ("MASK >> 1", ir.Const(U32, 0x2AAAAAAA)),
         ("MASK << 1 ^ ~u32(1)", ir.Const(U32, 0x55555554)),
         ("u32(2147483647) << 11", ir.Const(U32, 0xFFFFF800)),
@@ -134,6 +135,12 @@ def test_constants_are_folded_in_double_and_rounded_once(
 ) -> None:
     (statement,) = body_of(tmp_path, f"return {text}", expected.type.name, CONSTANTS)
     assert statement == ir.Return(expected)
+
+
+def test_parameter_hides_a_constant(tmp_path: Path) -> None:
+    """Also within an expression that would be a constant one."""
+    (result,) = body_of(tmp_path, "return 2.0 * x", before="x = 3.0\n")
+    assert result == ir.Return(ir.Binary(F32, "*", f32(2.0), X))
 
 
 def test_locals_are_inferred_and_mutable_where_assigned_again(tmp_path: Path) -> None:

@@ -72,6 +72,11 @@ LINES = {
         " " * 20,
         [" " * 20 + f"{SHORT},", " " * 24 + f"{SHORT},", " " * 24 + f"{SHORT};"],
     ),
+    "names with underscores are of one piece": (
+        f"{SHORT} + f(a_b, {SHORT}, {'x' * 20});",
+        "",
+        [SHORT, f"    + f(a_b, {SHORT}, {'x' * 20});"],
+    ),
     "a full line is kept": (
         f"{'a' * (WIDTH - 5)} + b, c;",
         "",
