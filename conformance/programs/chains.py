@@ -20,7 +20,7 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import F32, Vector
 from codegen.library import Library
 from codegen.passes.specialise import Specialised, specialise
-from conformance.programs.components import componentwise
+from conformance.programs.components import componentwise, without_cross
 
 UNROLLED = 16
 """Turns of a loop that compilers write out."""
@@ -70,7 +70,7 @@ def gathered(function: ir.Function) -> ir.Function:
 
 
 def _changed(function: ir.Function, change: Callable[[Known, ir.Expr], ir.Expr]) -> ir.Function:
-    body = componentwise(function).body
+    body = ir.map_body(componentwise(function).body, without_cross)
     known = {s.name: s.value for s in ir.statements(body) if isinstance(s, ir.Let) and not s.mutable}
     return replace(function, body=ir.map_body(body, partial(change, known)))
 

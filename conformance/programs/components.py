@@ -17,6 +17,20 @@ def componentwise(function: ir.Function) -> ir.Function:
     return replace(function, body=ir.map_body(function.body, _scalar))
 
 
+def without_cross(e: ir.Expr) -> ir.Expr:
+    """cross(a, b) as differences of products; any other expression as it is."""
+    if not (isinstance(e, ir.Builtin) and e.op == "cross" and isinstance(e.type, Vector)):
+        return e
+    a, b = e.args
+    number = e.type.element
+
+    def product(i: int, j: int) -> ir.Expr:
+        return ir.Binary(number, "*", _component(a, i), _component(b, j))
+
+    pairs = ((1, 2), (2, 0), (0, 1))
+    return ir.Construct(e.type, tuple(ir.Binary(number, "-", product(i, j), product(j, i)) for i, j in pairs))
+
+
 def _component(e: ir.Expr, k: int) -> ir.Expr:
     """The k-th component; of a number, the number."""
     if not isinstance(e.type, Vector):

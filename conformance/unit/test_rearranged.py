@@ -111,6 +111,29 @@ def test_a_sum_in_another_order_is_explained(tmp_path: Path) -> None:
     assert not explained(library, "probe", {"f": f}, "", got, "wgsl").any()
 
 
+CROSS = """def probe(a: V, b: V) -> vec3:
+    return cross(a, b) - abs(b)
+"""
+
+
+def test_a_cross_product_is_a_sum_in_any_order(tmp_path: Path) -> None:
+    """Random program 50085 of seed 1 on Mesa: z is (a.x b.y - |b.z|) - a.y b.x."""
+    library = library_of(tmp_path, CROSS)
+    a, b = (
+        np.array([words], np.uint32).view(np.float32)
+        for words in ((0xBF7514D6, 0xBF46CA96, 0xC02D9F89), (0x3F95FF6A, 0xBDAB8023, 0xC02CFA86))
+    )
+    inputs = {"a": a, "b": b}
+    got = np.array(evaluate(library, "probe", inputs))
+    got[:, 2] = (a[:, 0] * b[:, 1] - np.abs(b[:, 2])) - a[:, 1] * b[:, 0]
+    for table in ("wgsl", "glsl", "vulkan"):
+        assert not permitted(library, "probe", inputs, table).contains(got).any(), table
+        assert explained(library, "probe", inputs, "", got, table).all(), table
+    assert not explained(library, "probe", inputs, "", got, "opencl").any()
+    got[:, 2] -= 16.0 * np.spacing(np.abs(got[:, 2]))
+    assert not explained(library, "probe", inputs, "", got, "wgsl").any()
+
+
 def test_multiples_of_one_value_are_gathered(tmp_path: Path) -> None:
     """3.3 x - y - 3.3 x, in which the multiples of x become one."""
     source = "def probe(x: X, y: X) -> f32:\n    a = x * 1.1\n    return a * 3.0 - y - x * 3.3\n"
