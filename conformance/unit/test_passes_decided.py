@@ -47,6 +47,9 @@ def test_only_decided_ones_are_dropped(name: str, tmp_path: Path) -> None:
 
 
 I, U, TEN, LESS = ir.Var(I32, "i"), ir.Var(U32, "u"), ir.Const(I32, 10), ir.Const(I32, -10)
+TOP = ir.Const(U32, 2**31)
+AT_LEAST = ir.Binary(I32, "-", ir.Const(I32, -(2**31) + 1), ir.Const(I32, 1))
+"""The least integer, which has no literal in C."""
 SETTLED: list[tuple[ir.Expr, ir.Expr]] = [
     (ir.Convert(U32, TEN), ir.Const(U32, 10)),
     (ir.Convert(U32, LESS), ir.Const(U32, 2**32 - 10)),
@@ -57,6 +60,13 @@ SETTLED: list[tuple[ir.Expr, ir.Expr]] = [
     (ir.Convert(F32, TEN), ir.Convert(F32, TEN)),
     (ir.Convert(I32, ir.Const(U32, 7)), ir.Convert(I32, ir.Const(U32, 7))),
     (ir.Select(U32, ir.Const(BOOL, True), U, ir.Const(U32, 1)), U),
+    (
+        ir.Binary(U32, "<<", ir.Select(U32, ir.Const(BOOL, False), U, TOP), ir.Const(U32, 31)),
+        ir.Const(U32, 0),
+    ),
+    (ir.Binary(I32, "*", TEN, LESS), ir.Const(I32, -100)),
+    (ir.Binary(I32, "*", TEN, I), ir.Binary(I32, "*", TEN, I)),
+    (AT_LEAST, AT_LEAST),
     (ir.Select(U32, ir.Const(BOOL, False), ir.Const(U32, 1), U), U),
     (ir.Select(I32, ir.Binary(BOOL, "<", TEN, LESS), TEN, I), I),
     (ir.Select(I32, ir.Binary(BOOL, "<", LESS, TEN), I, TEN), I),
