@@ -17,7 +17,8 @@ from codegen.intervals.numbers import Array
 from codegen.intervals.values import Range
 
 Found = tuple[Array, Array, int, "tuple[Array, Array] | None"]
-_NEVER_NEAR, _NEVER_FAR = 2.0**-1000, float("inf")
+_NEVER = {"y": (2.0**-1000, float("inf")), "x": (0.0, float("inf"))}
+"""Limits of a row without any: a divisor of 0 is looked at all the same."""
 
 
 def _lanes(context: Context, *values: Range) -> int:
@@ -87,10 +88,11 @@ def multiply(context: Context, a: Range, b: Range) -> Found | None:
             exact, near = np.empty(count), np.empty(count)
             look = kernels().multiply_points(_ends(a)[0], _ends(b)[0], exact, near)
             return None if look else (near, near, 0, (exact, exact) if context.table.fused else None)
-        if a is b:
-            return None
         least, most = np.empty(count), np.empty(count)
-        low, high, look, _ = _run(kernels().multiply_nearest, count, *_ends(a), *_ends(b), least, most)
+        if a is b:
+            low, high, look, _ = _run(kernels().square_nearest, count, *_ends(a), least, most)
+        else:
+            low, high, look, _ = _run(kernels().multiply_nearest, count, *_ends(a), *_ends(b), least, most)
         return low, high, look, (least, most) if context.table.fused else None
     if a is b:
         return _run(kernels().square, count, *_ends(a))
@@ -123,16 +125,17 @@ def compare(context: Context, op: str, a: Range, b: Range) -> tuple[Array, Array
 def divide(context: Context, row: Row, x: Range, y: Range) -> Found | None:
     """x / y; looked at where the row promises nothing as well."""
     count = _lanes(context, x, y)
-    if not count or "x" in row.magnitude or row.normal:
+    if not count or row.normal:
         return None
     assert isinstance(row.accuracy, Ulp)
-    return _run(kernels().divide, count, *_ends(x), *_ends(y), row.accuracy.ulps, *_limits(row, "y"))
+    limits = *_limits(row, "y"), *_limits(row, "x")
+    return _run(kernels().divide, count, *_ends(x), *_ends(y), row.accuracy.ulps, *limits)
 
 
 def _limits(row: Row, operand: str) -> tuple[float, float]:
     """Least and largest magnitude of an operand for which the row promises something."""
     if operand not in row.magnitude:
-        return _NEVER_NEAR, _NEVER_FAR
+        return _NEVER[operand]
     near, far = row.magnitude[operand]
     return 2.0**near, 2.0**far
 

@@ -127,14 +127,17 @@ def divide(
     ulps: float,
     near: float,
     far: float,
+    x_near: float,
+    x_far: float,
     low: Array,
     high: Array,
 ) -> int:
-    """x / y within some ULP; looked at where |y| may lie below `near` or above `far`."""
+    """x / y within some ULP; looked at where |y| may lie below `near` or above `far`, or |x| likewise."""
     look = 0
     for i in range(len(low)):
         p, q, u, v = at(x_low, i), at(x_high, i), at(y_low, i), at(y_high, i)
         look |= (max(u, -v) < near) | (max(abs(u), abs(v)) > far)
+        look |= (max(p, -q) < x_near) | (max(abs(p), abs(q)) > x_far)
         negative = v < 0.0
         least, most = (-q if negative else p), (-p if negative else q)
         small, large = (-v if negative else u), (-u if negative else v)
@@ -282,6 +285,20 @@ def multiply_nearest(
         p, q = at(a_low, i) * at(b_low, i), at(a_high, i) * at(b_low, i)
         r, s = at(a_low, i) * at(b_high, i), at(a_high, i) * at(b_high, i)
         u, v = min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
+        x, y = settled_low(nearest(u)), settled_high(nearest(v))
+        least[i], most[i], low[i], high[i] = u, v, x, y
+        look |= (x < -LARGEST) | (y > LARGEST)
+    return look
+
+
+@compiled
+def square_nearest(a_low: Ends, a_high: Ends, least: Array, most: Array, low: Array, high: Array) -> int:
+    """Ends of the exact squares; and of a a, rounded to nearest."""
+    look = 0
+    for i in range(len(least)):
+        p, q = at(a_low, i), at(a_high, i)
+        near, far = max(max(p, -q), 0.0), max(abs(p), abs(q))
+        u, v = near * near, far * far
         x, y = settled_low(nearest(u)), settled_high(nearest(v))
         least[i], most[i], low[i], high[i] = u, v, x, y
         look |= (x < -LARGEST) | (y > LARGEST)

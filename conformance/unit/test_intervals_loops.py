@@ -260,9 +260,9 @@ def test_ordinary_lanes_are_settled_by_a_loop() -> None:
         assert settled(bulk.add(here, known, known)) and settled(
             bulk.multiply(here, known, ordinary("point"))
         )
-        assert settled(bulk.multiply(here, many, many)) == either
+        assert settled(bulk.multiply(here, many, many))
         row = table.row("/")
-        assert settled(bulk.divide(here, row, many, shared)) == (not row.normal and "x" not in row.magnitude)
+        assert settled(bulk.divide(here, row, many, shared)) == (not row.normal)
         assert settled(bulk.within_ulp(here, many.low, many.high, 1.0, 1.0))
         root, quotient = table.row("inverse_sqrt"), table.row("/")
         assert settled(bulk.inverse_square_root(here, many, root))
