@@ -87,9 +87,13 @@ def with_edges(function: ir.Function, arrays: dict[str, Value]) -> dict[str, Val
     return found
 
 
-@functools.lru_cache(1024)
 def _alike(kind: np.dtype[Any], value: float | int | bool) -> Array:
     """A number that is the same in all lanes; the same object for the same number, not to be written to."""
+    return _kept(kind, value, value == 0 and math.copysign(1.0, value) < 0.0)
+
+
+@functools.lru_cache(1024)
+def _kept(kind: np.dtype[Any], value: float | int | bool, negative_zero: bool) -> Array:
     one = np.full(1, value, kind)
     one.setflags(write=False)
     return one

@@ -21,7 +21,7 @@ from codegen.evaluate.arrays import Array, Value
 from codegen.evaluate.textures import as_map
 from codegen.evaluate.vectors import stacked
 from codegen.ir import nodes as ir
-from codegen.ir.content import variables
+from codegen.ir.content import variables, zeros
 from codegen.ir.types import Struct, Type, Vector
 
 
@@ -43,9 +43,13 @@ class Together:
     inner: Mapping[str, Type]
 
 
-@functools.lru_cache(512)
 def together(s: ir.For) -> Together | None:
     """The loop taken apart; None where it branches, ends early, or defines something by what it hands on."""
+    return _together(s, zeros(ir.expressions(s.body)))
+
+
+@functools.lru_cache(512)
+def _together(s: ir.For, signs: tuple[bool, ...]) -> Together | None:
     if s.limit is not None or s.stop - s.start < 2:
         return None
     body = [x for x in s.body if isinstance(x, ir.Let | ir.Assign)]
@@ -71,7 +75,7 @@ def together(s: ir.For) -> Together | None:
         return ir.rebuild(e, tuple(map(part, ir.children(e))))
 
     for x in body:
-        value, named = _over_elements(x.value, s.name, inside)
+        value, named = _over_elements(x.value, zeros(ir.walk(x.value)), s.name, inside)
         elements |= named
         if isinstance(x, ir.Let):
             if not assigned.isdisjoint(_names(value)):
@@ -92,10 +96,13 @@ def together(s: ir.For) -> Together | None:
 
 
 @functools.lru_cache(4096)
-def _over_elements(e: ir.Expr, index: str, inside: frozenset[str]) -> tuple[ir.Expr, dict[str, str]]:
+def _over_elements(
+    e: ir.Expr, signs: tuple[bool, ...], index: str, inside: frozenset[str]
+) -> tuple[ir.Expr, dict[str, str]]:
     """An expression with elements of arrays around the loop, where the iteration names them, by names of
     their own; and those names with their arrays. Loops that share statements share what becomes of them.
 
+    signs   of its zeros
     inside  names that the loop gives values to
     """
     elements: dict[str, str] = {}

@@ -17,7 +17,7 @@ import numpy as np
 from codegen.evaluate.arrays import Arithmetic, Value, convert_inputs
 from codegen.evaluate.pages import Pages
 from codegen.ir import nodes as ir
-from codegen.ir.content import variables
+from codegen.ir.content import variables, zeros
 
 MOST = 256 * 2**20
 """Bytes of values that are remembered; then all are forgotten."""
@@ -51,7 +51,7 @@ class Memory:
         self._values: dict[Key, tuple[Value, list[Value]]] = {}
         self._inputs: dict[tuple[object, ...], tuple[Value, Any, int]] = {}
         self._prepared: dict[int, Prepared] = {}
-        self._numbers: dict[ir.Expr, int] = {}
+        self._numbers: dict[tuple[ir.Expr, tuple[bool, ...]], int] = {}
 
     def inputs(
         self, function: ir.Function, given: Mapping[str, Any], arithmetic: Arithmetic
@@ -72,7 +72,7 @@ class Memory:
         """The number that equal expressions share, with what it depends on; looked up once per object."""
         found = self._prepared.get(id(e))
         if found is None:
-            number = self._numbers.setdefault(e, len(self._numbers))
+            number = self._numbers.setdefault((e, zeros(ir.walk(e))), len(self._numbers))
             found = self._prepared[id(e)] = Prepared(number, variables(e), tuple(outer_calls(e)), e)
         return found
 
