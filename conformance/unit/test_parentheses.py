@@ -44,6 +44,7 @@ CASTS = {
         "-f32(n)": ("-float(n)", "-f32(n)", "-((float)n)"),
         "a * (b if p else c)": ("a * (p ? b : c)", "a * select(c, b, p)", "a * (p ? b : c)"),
         "(a if p else b) * c": ("(p ? a : b) * c", "select(b, a, p) * c", "(p ? a : b) * c"),
+        "a + b if a < b else -c": ("a < b ? a + b : -c", "select(-c, a + b, a < b)", "a < b ? a + b : -c"),
     },
     "vec3": {
         "a * vec3(b, c, a)": ("a * vec3(b, c, a)", "a * vec3<f32>(b, c, a)", "a * (float3)(b, c, a)"),

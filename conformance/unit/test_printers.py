@@ -27,7 +27,7 @@ from codegen.emit.literal import literal, shortest
 from codegen.emit.stmt import StmtPrinter
 from codegen.errors import Place
 from codegen.ir import nodes as ir
-from codegen.ir.types import BOOL, F32, I32, U32, VALUE_TYPES, VEC3
+from codegen.ir.types import BOOL, F16, F32, HVEC3, I32, U32, VALUE_TYPES, VEC3
 from codegen.ir.verify import verify
 from conformance.unit.support.dialects import DIALECTS, ONE_PER_TARGET, dialect_id, validate
 from conformance.unit.support.neutral import of_ir, returned
@@ -140,10 +140,24 @@ def test_comparisons_among_arguments_open_no_template() -> None:
         "f(a > b, a < b)": (more, less),
         "f((a > b && a < b), a > b)": (both, more),
         "f((a > b || a < b), a > b)": (either, more),
+        "f(g(a < b), a > b)": (ir.Call(F32, "g", (less,)), more),
+        "f(a, a < b)": (a, less),
     }
     for wanted, args in texts.items():
         for dialect in ONE_PER_TARGET:
             assert ExprPrinter(dialect).show(ir.Call(F32, "f", args)) == wanted
+
+
+def test_conversions_of_vectors_are_calls_in_every_language() -> None:
+    """Also in OpenCL C, where a conversion of a number is a cast, which an operand after a point is not."""
+    v = ir.Convert(HVEC3, ir.Var(VEC3, "v"))
+    part, double = ir.Swizzle(F16, v, "y"), ir.Binary(HVEC3, "*", v, v)
+    texts = [(ExprPrinter(d).show(part), ExprPrinter(d).show(double)) for d in ONE_PER_TARGET]
+    assert texts == [
+        ("vec3(v).y", "vec3(v) * vec3(v)"),
+        ("vec3<f16>(v).y", "vec3<f16>(v) * vec3<f16>(v)"),
+        ("convert_half3(v).y", "convert_half3(v) * convert_half3(v)"),
+    ]
 
 
 def test_operations_on_literals_alone_are_single_precision() -> None:

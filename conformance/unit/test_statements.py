@@ -57,6 +57,11 @@ LINES = {
         "",
         [f"{SHORT} = (S){{{'y' * 20} + a, {'y' * 20}}}", f"    - v[{'z' * 20} + b];"],
     ),
+    "between the brackets of a cast and of its parts is no place": (
+        f"{SHORT} + (float3)({SHORT}, {'y' * 15}, {'z' * 15});",
+        "",
+        [SHORT, f"    + (float3)({SHORT}, {'y' * 15}, {'z' * 15});"],
+    ),
     "a comparison and a sign stay": (
         f"b = {SHORT} < -{SHORT} && c < {SHORT};",
         "    ",

@@ -42,6 +42,10 @@ def passed(t: Annotated[Texture, Edges("{u}", "{v}")], uv: P) -> vec4:
     \"\"\"A lookup through a call.\"\"\"
     return base(t, uv)
 
+def rooted(t: Annotated[Texture, Edges("{u}", "{v}")], uv: P) -> f32:
+    \"\"\"The root of a lookup.\"\"\"
+    return sqrt(max(lookup(t, uv).x, 0.5))
+
 def size(t: Annotated[Texture, Edges("{u}", "{v}")]) -> vec2:
     \"\"\"Its size.\"\"\"
     return texture_size(t)
@@ -109,6 +113,12 @@ def test_text_of_every_target(tmp_path: Path) -> None:
     assert "return vair_base(t, t_sampler, t_layout, uv);" in texts["opencl"]
     assert "return vair_lookup_level(t, t_sampler, t_layout, uv, 0.0f);" in texts["opencl"]
     assert "$" not in texts["opencl"]
+    rooted = {target: emit(library, dialect(target), ["rooted"]) for target in ("glsl", "wgsl", "opencl")}
+    assert "return sqrt(max(textureLod(t, uv, 0.0).x, 0.5));" in rooted["glsl"]
+    assert "return sqrt(max(textureSampleLevel(t, t_sampler, uv, 0.0).x, 0.5));" in rooted["wgsl"]
+    assert (
+        "return sqrt(max(vair_lookup_level(t, t_sampler, t_layout, uv, 0.0f).x, 0.5f));" in rooted["opencl"]
+    )
     sizes = {target: emit(library, dialect(target), ["size"]) for target in ("glsl", "wgsl", "opencl")}
     assert "return vec2(textureSize(t, 0));" in sizes["glsl"]
     assert "return vec2<f32>(textureDimensions(t));" in sizes["wgsl"]
