@@ -67,9 +67,14 @@ def each(function: Callable[..., Any]) -> Callable[..., Any]:
     return apply
 
 
+def whole(x: Any) -> int:
+    """Truncated; 0 for what is no number or infinite, of which no table promises anything."""
+    return int(x) if np.isfinite(x) else 0
+
+
 def to_u32(x: Any) -> np.uint32:
     """Truncated, then modulo 2^32."""
-    return np.uint32(int(x) % 2**32)
+    return np.uint32(whole(x) % 2**32)
 
 
 def vector(size: int, element: Callable[[Any], Any]) -> Callable[..., Vec]:
@@ -141,7 +146,7 @@ NAMESPACE: dict[str, Any] = {
     "float_to_bits": lambda x: np.float32(x).view(np.uint32),
     "bits_to_float": lambda x: np.uint32(x).view(np.float32),
     "f32": np.float32,
-    "i32": int,
+    "i32": whole,
     "u32": to_u32,
     **{f"vec{n}": vector(n, np.float32) for n in (2, 3, 4)},
     **{f"uvec{n}": vector(n, to_u32) for n in (2, 3)},

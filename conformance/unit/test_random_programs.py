@@ -22,7 +22,8 @@ from codegen.intervals import permitted
 from codegen.ir import nodes as ir
 from codegen.ir.verify import verify_selection
 from codegen.library import Library
-from conformance.fuzz.case import draw_inputs, make_case
+from conformance.fuzz import python_oracle
+from conformance.fuzz.case import Case, draw_inputs, make_case
 from conformance.fuzz.engine import Tally, run_cases
 from conformance.fuzz.report import explain
 from conformance.fuzz.source import write
@@ -59,6 +60,25 @@ def test_programs_mean_what_they_say(part: int) -> None:
     shown = "\n\n".join(explain(finding, []) for finding in tally.findings[:3])
     assert not tally.findings, "\n".join([*tally.lines(), shown])
     assert tally.programs == len(part_of(part))
+
+
+NO_NUMBER = """def case_0(x: Annotated[f32, Interval(-4.0, 4.0)]) -> {type}:
+    y = x * 1.0e20 * 1.0e20
+    return {type}(clamp(y - y, 0.0, 99.0))
+"""
+
+
+@pytest.mark.parametrize("type_", ["i32", "u32"])
+def test_python_converts_what_is_no_number(type_: str, tmp_path: Path) -> None:
+    """Random program 17175 of seed 1: no table promises anything, and every other lane is judged."""
+    case = Case(SEED, 0, NO_NUMBER.format(type=type_), "case_0")
+    library = write(tmp_path, [case])
+    inputs = {"x": np.array([3.0, 0.0], np.float32)}
+    allowed = permitted(library, case.entry, inputs, TABLE)
+    got = python_oracle.run(case.text, library.function(case.entry), inputs, range(2))
+    assert allowed.guaranteed.tolist() == [False, True]
+    assert allowed.contains(got).all()
+    assert np.asarray(got)[1] == 0
 
 
 @all_parts
