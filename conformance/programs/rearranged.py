@@ -1,11 +1,12 @@
 """Sums and products with their constant moved inwards, as compilers do it.
 
 Mesa 22.3.6 turns (a + b) + c with a constant c into (a + c) + b, and the same for products; it does so across
-locals and the turns of a loop, reorders sums, gathers multiples of one value (conformance.programs.chains),
-and factors interpolations for some drivers (conformance.programs.interpolated). WGSL (Reassociation and
-Fusion: any reordering whose answer is the same if computed exactly), Vulkan (distributivity included) and
-GLSL without `precise` allow rearrangement; the accuracy tables judge expressions as written. A result that
-only this explains is counted as rearranged, and is no failure.
+locals and the turns of a loop (conformance.programs.chains), reorders sums and takes out factors that their
+terms share (conformance.programs.gathered), and factors interpolations for some drivers
+(conformance.programs.interpolated). WGSL (Reassociation and Fusion: any reordering whose answer is the same
+if computed exactly), Vulkan (distributivity included) and GLSL without `precise` allow rearrangement; the
+accuracy tables judge expressions as written. A result that only this explains is counted as rearranged, and
+is no failure.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from codegen.intervals.accuracy import Inherited
 from codegen.ir import nodes as ir
 from codegen.ir.types import Vector
 from codegen.library import Library
-from conformance.programs.chains import chained, gathered, reordered, straightened
+from conformance.programs.chains import chained, straightened
+from conformance.programs.gathered import gathered
 from conformance.programs.interpolated import interpolated
 
 REARRANGING = frozenset({"glsl", "glsl_es", "vulkan", "wgsl", "opencl_relaxed"})
@@ -59,11 +61,11 @@ def _forms(
         yield library.with_functions(map(change, selected)), inputs
     straight = straightened(library, name)
     arguments = straight.arguments(inputs) if straight.parameters else {}
-    forms = [chained(straight.function, first) for first in (False, True)]
+    for first in (False, True):
+        yield library.with_functions([chained(straight.function, first)]), arguments
     if table.row("dot").accuracy == ANY_ORDER:
-        forms += [form(straight.function) for form in (reordered, gathered)]
-    for made in forms:
-        yield library.with_functions([made]), arguments
+        for made in gathered(straight.function):
+            yield library.with_functions([made]), arguments
 
 
 def _components_inside(allowed: Permitted, value: Value) -> Array:

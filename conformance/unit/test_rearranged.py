@@ -5,7 +5,9 @@ The sum across a loop and a vector is that of random program 1032 of seed 9, as 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +18,8 @@ from codegen.ir import nodes as ir
 from conformance.fuzz.case import draw_inputs, make_case
 from conformance.fuzz.source import write
 from conformance.metamorphic.pairs import columns
-from conformance.programs.chains import chained, gathered, straightened
+from conformance.programs.chains import chained, straightened
+from conformance.programs.gathered import gathered
 from conformance.programs.interpolated import interpolated
 from conformance.programs.rearranged import explained
 from conformance.unit.support.sources import library_of
@@ -134,18 +137,87 @@ def test_a_cross_product_is_a_sum_in_any_order(tmp_path: Path) -> None:
     assert not explained(library, "probe", inputs, "", got, "wgsl").any()
 
 
+F, THIRD = np.float32, np.float32(0.3333333333333333)
+SHARED: dict[str, tuple[str, list[int], Callable[..., Any]]] = {
+    # A factor before the sum of what it was shared by: random programs 14041, 19458 and 28995 of seed 1.
+    "square": (
+        "dot(vec4(a, -2.75, a, 0.3333333333333333), vec4(a))",
+        [0x3F869730],
+        lambda a: a * ((a + a) + (F(-2.75) + THIRD)),
+    ),
+    "value": (
+        "dot(vec3(a, a, 0.3333333333333333), vec3(b))",
+        [0x4078948A, 0x40582610],
+        lambda a, b: b * ((a + a) + THIRD),
+    ),
+    "constant": ("dot(vec2(a, b), vec2(5.0))", [0x3F36B3A5, 0xC00BEF24], lambda a, b: F(5.0) * (a + b)),
+    "inside": (
+        "c - dot(min(vec2(a, b), vec2(9.0)), vec2(5.0))",
+        [0x3DA95099, 0x3F9747B4, 0x404BEE6C],
+        lambda a, b, c: c - F(5.0) * (a + b),
+    ),
+    # A product that is a sign: random program 24669 of seed 1.
+    "sign": (
+        "0.7 - (a + b) * clamp(a, -1.0, -1.0)",
+        [0x407A5B3F, 0xC07A5B3F],
+        lambda a, b: (a + F(0.7)) + b,
+    ),
+    "four": (
+        "(a + b) + (c + d)",
+        [0x447A0000, 0xC47A0000, 0x3DCCCCCD, 0x3E4CCCCD],
+        lambda a, b, c, d: (a + c) + (b + d),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SHARED)
+def test_sums_with_shared_factors_are_explained(name: str, tmp_path: Path) -> None:
+    """And what is sixteen steps of the largest number away from one of their forms is not."""
+    text, words, form = SHARED[name]
+    values = [np.array([word], np.uint32).view(np.float32) for word in words]
+    inputs = dict(zip("abcd", values, strict=False))
+    parameters = ", ".join(f"{letter}: X" for letter in inputs)
+    library = library_of(tmp_path, f"def probe({parameters}) -> f32:\n    return {text}\n")
+    got = form(*values)
+    steps = 16.0 * np.spacing(np.abs([got, *values]).max())
+    for table in ("wgsl", "glsl", "vulkan"):
+        assert not permitted(library, "probe", inputs, table).contains(got).any(), table
+        assert explained(library, "probe", inputs, "", got, table).all(), table
+        for wrong in (got - steps, got + steps):
+            assert not explained(library, "probe", inputs, "", wrong, table).any(), table
+    assert not explained(library, "probe", inputs, "", got, "opencl").any()
+
+
 def test_multiples_of_one_value_are_gathered(tmp_path: Path) -> None:
     """3.3 x - y - 3.3 x, in which the multiples of x become one."""
     source = "def probe(x: X, y: X) -> f32:\n    a = x * 1.1\n    return a * 3.0 - y - x * 3.3\n"
     library = library_of(tmp_path, source)
     straight = straightened(library, "probe").function
-    made = gathered(straight)
+    in_order, made = gathered(straight)
     inputs = {"x": np.array([1.7], np.float32), "y": np.array([0.3], np.float32)}
-    once = [e for e in ir.expressions(made.body) if isinstance(e, ir.Var) and e.name == "x"]
-    assert len(once) == 1
-    wanted = evaluate(library, "probe", inputs, "float64")
-    got = evaluate(library.with_functions([made]), "probe", inputs, "float64")
-    assert all(np.abs(a - b).max() <= SAME for a, b in zip(columns(wanted), columns(got), strict=True))
+    for form, times in ((in_order, 2), (made, 1)):
+        found = [e for e in ir.expressions(form.body) if isinstance(e, ir.Var) and e.name == "x"]
+        assert len(found) == times
+        wanted = evaluate(library, "probe", inputs, "float64")
+        got = evaluate(library.with_functions([form]), "probe", inputs, "float64")
+        assert all(np.abs(a - b).max() <= SAME for a, b in zip(columns(wanted), columns(got), strict=True))
+
+
+GROWING = """def probe(x: X, y: X) -> f32:
+    s = x
+    for k in range(16):
+        s = s + s * y + x * y
+    return s
+"""
+
+
+def test_sums_through_long_loops_are_looked_at_in_time(tmp_path: Path) -> None:
+    """Written out, the sum has 2^16 terms."""
+    library = library_of(tmp_path, GROWING)
+    inputs = {"x": np.array([1.0], np.float32), "y": np.array([0.5], np.float32)}
+    got = np.asarray(evaluate(library, "probe", inputs))
+    assert explained(library, "probe", inputs, "glsl", got).all()
+    assert not explained(library, "probe", inputs, "glsl", got * np.float32(1.01)).any()
 
 
 def test_constant_moved_outwards_is_explained(tmp_path: Path) -> None:
@@ -192,20 +264,27 @@ def _of_constants(e: ir.Expr) -> bool:
     return all(isinstance(part, ir.Const | ir.Binary | ir.Unary) for part in ir.walk(e))
 
 
-@pytest.mark.parametrize("constants_first", [False, True])
-def test_chains_mean_what_they_were_made_of(constants_first: bool, tmp_path: Path) -> None:
+FORMS: dict[str, Callable[[ir.Function], Iterable[ir.Function]]] = {
+    "constants first": lambda function: [chained(function, True)],
+    "constants last": lambda function: [chained(function, False)],
+    "gathered": gathered,
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_forms_mean_what_they_were_made_of(form: str, tmp_path: Path) -> None:
     cases = [make_case(5, number) for number in range(24)]
     library = write(tmp_path, cases)
     changed = 0
     for case in cases:
         straight = straightened(library, case.entry)
-        made = chained(straight.function, constants_first)
-        changed += made.body != straight.function.body
         inputs = draw_inputs(case, library.function(case.entry).parameters, 32)
         wanted = evaluate(library, case.entry, inputs, "float64")
-        got = evaluate(library.with_functions([made]), case.entry, straight.arguments(inputs), "float64")
-        for a, b in zip(columns(wanted), columns(got), strict=True):
-            near = np.abs(a.astype(np.float64) - b) <= SAME * (1.0 + np.abs(a.astype(np.float64)))
-            # Where a comparison or a conversion turns on the last bit, a few lanes may go the other way.
-            assert near.mean() > 0.9, case.text
+        for made in FORMS[form](straight.function):
+            changed += made.body != straight.function.body
+            got = evaluate(library.with_functions([made]), case.entry, straight.arguments(inputs), "float64")
+            for a, b in zip(columns(wanted), columns(got), strict=True):
+                near = np.abs(a.astype(np.float64) - b) <= SAME * (1.0 + np.abs(a.astype(np.float64)))
+                # Where a comparison or a conversion turns on the last bit, a few lanes may go the other way.
+                assert near.mean() > 0.9, case.text
     assert changed > 3
