@@ -1,13 +1,15 @@
 """What goes into the evaluator and between its kinds of numbers.
 
 Plan.
-  conversions  floats become whole numbers by cutting off, up to the ends of both types, in every arithmetic
+  conversions  floats become whole numbers by cutting off, up to the ends of both types, in every arithmetic;
+               those beyond the ends of u32 and of halves give what IEEE 754 and two's complement say
   shapes       a scalar of a wrong shape gets one sentence, as a vector does
   multiprecision  inputs are exact there, and so is what follows
 """
 
 from __future__ import annotations
 
+import warnings
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -19,6 +21,7 @@ import pytest
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.evaluate.arrays import ARITHMETICS
+from codegen.passes.half import HalfRules
 from conformance.unit.support.sources import library_of
 
 CUT_OFF = {
@@ -35,6 +38,23 @@ def test_floats_are_cut_off(type_: str, arithmetic: str, tmp_path: Path) -> None
     found: Any = evaluate(library, "probe", {"x": np.array(given, np.float32)}, arithmetic)
     assert [int(k) for k in found] == expected
     assert np.asarray(found).dtype == {"u32": np.uint32, "i32": np.int32}[type_]
+
+
+@pytest.mark.parametrize("arithmetic", ["float32", "float64"])
+def test_floats_beyond_a_u32_are_taken_modulo_its_size(arithmetic: str, tmp_path: Path) -> None:
+    """Sources avoid them; yet whichever processor evaluates, a lane that is not taken has the same bits."""
+    library = library_of(tmp_path, "def probe(x: X) -> u32:\n    return u32(x)\n")
+    x = np.array([-1.0, -2.75, 2.0**32, 3.0 * 2.0**31, -(2.0**33) - 1024.0], np.float32)
+    found: Any = evaluate(library, "probe", {"x": x}, arithmetic)
+    assert found.tolist() == [2**32 - 1, 2**32 - 2, 0, 2**31, 2**32 - 1024]
+
+
+def test_numbers_beyond_the_largest_half_become_infinite_without_a_warning(tmp_path: Path) -> None:
+    library = library_of(tmp_path, 'def probe(x: X) -> f32:\n    """F."""\n    return -x\n')
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found: Any = evaluate(library, "probe", {"x": [65504.0, 1e6, -1e6]}, "float16", rules=HalfRules())
+    assert found.tolist() == [-65504.0, -np.inf, np.inf]
 
 
 def test_scalar_of_a_wrong_shape(tmp_path: Path) -> None:

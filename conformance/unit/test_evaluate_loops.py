@@ -5,6 +5,7 @@ Plan.
   forms   sums, products, a number of the iteration, a value that is carried and used, a branch inside, an
           assigned local, what is the same in every iteration, a call: whatever is taken apart and what is not
   apart   which of these loops are taken apart
+  returns a loop that returns ends, in all lanes or in some
   lanes   where a parameter ends a loop, every lane runs as often as its own number says, also in a branch and
           where some have returned
 """
@@ -102,6 +103,35 @@ def test_forms_of_loops(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, form: s
     inputs = {name: generator.uniform(-4.0, 8.0, COUNT).astype(np.float32) for name in "xy"}
     one, other = both(monkeypatch, library, "probe", inputs, memory)
     assert one == other
+
+
+RETURNS = """def f(x: X, y: X) -> f32:
+    for i in range(3):
+        return x + f32(i)
+    return y
+
+
+def g(x: X, y: X) -> f32:
+    for i in range(3):
+        if x > f32(i):
+            return y + f32(i)
+        y2 = x
+        for k in range(2):
+            return y2 - f32(i + k)
+    return y
+
+
+"""
+
+
+def test_a_loop_that_returns_ends(tmp_path: Path) -> None:
+    """What would come after a return changes nothing, be it in all lanes or in some."""
+    library = library_of(tmp_path, RETURNS)
+    inputs = {"x": np.array([-1.0, 0.5, 3.0], np.float32), "y": np.array([8.0, 9.0, 7.0], np.float32)}
+    for memory in (None, Memory()):
+        for name, expected in (("f", [-1.0, 0.5, 3.0]), ("g", [-1.0, 9.0, 7.0])):
+            found: Any = evaluate(library, name, inputs, memory=memory)
+            assert found.tolist() == expected
 
 
 LANES = """def f(x: X, n: u32, inside: bool) -> f32:

@@ -2,7 +2,7 @@
 
 Plan. Functions with calls, structs and branches are evaluated with one memory, twice, and then with every
 variant at every call site; a scene with loops over arrays likewise. Each result is held against evaluation
-without a memory.
+without a memory. What is remembered is not evaluated again.
 """
 
 from __future__ import annotations
@@ -14,13 +14,15 @@ import numpy as np
 import pytest
 
 from codegen.evaluate import evaluate
-from codegen.evaluate.memory import Memory
+from codegen.evaluate.arrays import Value
+from codegen.evaluate.memory import Key, Memory
 from codegen.library import Library, load_library
 from codegen.scene.description.document import read_scene
 from codegen.scene.general import general_function
 from codegen.scene.proof.points import draw as scene_points
 from codegen.scene.reduction.sites import sites, substituted
 from conformance.cases.drawing import draw, families_for
+from conformance.unit.support.sources import library_of
 
 LIBRARY = load_library()
 NAMES = ("fakefur_shade", "brushed_shade", "safe_normalize", "fur_geometry")
@@ -60,6 +62,39 @@ def test_loops_are_remembered_light_by_light(tmp_path: Path) -> None:
     memory, inputs = Memory(), scene_points(scene, general, COUNT).inputs
     for _ in range(2):
         check(library, general.function.name, inputs, memory)
+
+
+class Counting(Memory):
+    """Counts what is evaluated."""
+
+    evaluated = 0
+
+    def keep(self, key: Key, made: Value, of: list[Value]) -> Value:
+        self.evaluated += 1
+        return super().keep(key, made, of)
+
+
+TWO = """def first(x: X, y: X) -> f32:
+    a = x * y
+    b = sqrt(abs(a))
+    return b + x
+def second(x: X, y: X) -> f32:
+    a = x * y
+    b = sqrt(abs(a))
+    return b - x
+"""
+
+
+def test_what_is_remembered_is_not_evaluated_again(tmp_path: Path) -> None:
+    """Of the second function only what the first one has not: its last line."""
+    library, memory = library_of(tmp_path, TWO), Counting()
+    inputs = {name: np.full(COUNT, 0.75, np.float32) for name in "xy"}
+    counts = []
+    for name in ("first", "first", "second"):
+        before = memory.evaluated
+        evaluate(library, name, inputs, memory=memory)
+        counts.append(memory.evaluated - before)
+    assert counts == [3, 0, 1]
 
 
 def test_other_inputs_under_the_same_names_are_other_values() -> None:

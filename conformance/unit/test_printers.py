@@ -135,7 +135,7 @@ def test_comparisons_among_arguments_open_no_template() -> None:
     a, b = ir.Var(F32, "a"), ir.Var(F32, "b")
     less, more = ir.Binary(BOOL, "<", a, b), ir.Binary(BOOL, ">", a, b)
     both, either = (ir.Binary(BOOL, op, more, less) for op in ("and", "or"))
-    texts = {
+    texts: dict[str, tuple[ir.Expr, ...]] = {
         "f((a < b), a > b)": (less, more),
         "f(a > b, a < b)": (more, less),
         "f((a > b && a < b), a > b)": (both, more),
