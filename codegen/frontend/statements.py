@@ -7,7 +7,6 @@ from collections import ChainMap
 from dataclasses import replace
 
 from codegen import names
-from codegen.errors import nearest
 from codegen.frontend import constants
 from codegen.frontend.expressions import ExpressionLowering
 from codegen.frontend.scope import Names
@@ -108,8 +107,6 @@ class StatementLowering:
             raise self.file.error(node, "a texture is a parameter; pass it on by its own name")
         if known is not None:
             return ir.Assign(name, e, node.lineno)
-        if isinstance(node, ast.AugAssign):
-            raise self.file.error(node, f'unknown name "{name}"{nearest(name, self.scope)}')
         if self.resolver.where(name) or self.resolver.find(self.file, name) or name in self.file.imports:
             raise self.file.error(node, f'"{name}" already names something else in this file or the library')
         names.check(name, "local", self.file.place(node))

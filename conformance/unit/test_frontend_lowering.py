@@ -51,6 +51,30 @@ EXPRESSIONS: dict[str, tuple[str, ir.Expr]] = {
     "rounded once": ("0.1 + 0.2 + 1e-9", f32(0.1 + 0.2 + 1e-9)),
     "folded power": ("2.0 ** -24", f32(2.0**-24)),
     "folded mixture": ("2 * 0.25", f32(0.5)),
+    "folded difference": ("0.3 - 0.1", f32(0.3 - 0.1)),
+    "folded product": ("0.1 * 0.3", f32(0.1 * 0.3)),
+    "folded whole numbers": (
+        "n + (1 + 2 * 3 - 2 ** 2)",
+        ir.Binary(U32, "+", N, ir.Const(U32, 3)),
+    ),
+    "folded whole division": ("n + 7 // 2", ir.Binary(U32, "+", N, ir.Const(U32, 3))),
+    "folded shift": ("n + (5 << 2)", ir.Binary(U32, "+", N, ir.Const(U32, 20))),
+    "folded sign": ("k + -(1 + 2)", ir.Binary(I32, "+", K, ir.Const(I32, -3))),
+    "powers up to 64 are folded": ("k + 1 ** 64", ir.Binary(I32, "+", K, ir.Const(I32, 1))),
+    "largest numbers": (
+        "u32(k + 2147483647) + 4294967295",
+        ir.Binary(
+            U32,
+            "+",
+            ir.Convert(U32, ir.Binary(I32, "+", K, ir.Const(I32, 2147483647))),
+            ir.Const(U32, 4294967295),
+        ),
+    ),
+    "smallest number": ("k + -2147483647", ir.Binary(I32, "+", K, ir.Const(I32, -2147483647))),
+    "integer vector and a literal": (
+        "uvec3(n) * 2",
+        ir.Binary(UVEC3, "*", ir.Construct(UVEC3, (N,)), ir.Const(U32, 2)),
+    ),
     "scaled": ("v * x", ir.Binary(VEC3, "*", V, X)),
     "scaled from the left": ("2.0 * v", ir.Binary(VEC3, "*", f32(2.0), V)),
     "component": ("v.y", ir.Swizzle(F32, V, "y")),
@@ -229,7 +253,17 @@ def test_name_may_be_reused_in_another_block(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("bounds", "start", "stop"),
-    [("4", 0, 4), ("1, 4", 1, 4), ("COUNT", 0, 3), ("-2, 2 * COUNT", -2, 6), ("0", 0, 0)],
+    [
+        ("4", 0, 4),
+        ("1, 4", 1, 4),
+        ("COUNT", 0, 3),
+        ("-2, 2 * COUNT", -2, 6),
+        ("0", 0, 0),
+        ("65536", 0, 65536),
+        ("65536, 131072", 65536, 131072),
+        ("-2147483647, -2147483640", -2147483647, -2147483640),
+        ("2147483640, 2147483647", 2147483640, 2147483647),
+    ],
 )
 def test_loop_bounds_are_constants(bounds: str, start: int, stop: int, tmp_path: Path) -> None:
     body = body_of(
