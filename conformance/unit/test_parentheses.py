@@ -41,6 +41,8 @@ CASTS = {
             "vec3<f32>(a, b, c).y - a",
             "((float3)(a, b, c)).y - a",
         ),
+        "-2.0 * a": ("-2.0 * a", "-2.0 * a", "-2.0f * a"),
+        "-2.0 + a": ("-2.0 + a", "-2.0 + a", "-2.0f + a"),
         "-f32(n)": ("-float(n)", "-f32(n)", "-((float)n)"),
         "a * (b if p else c)": ("a * (p ? b : c)", "a * select(c, b, p)", "a * (p ? b : c)"),
         "(a if p else b) * c": ("(p ? a : b) * c", "select(b, a, p) * c", "(p ? a : b) * c"),

@@ -308,6 +308,7 @@ def test_other_literals(dialect: Dialect) -> None:
         ir.Const(U32, 7),
         ir.Const(U32, 2**32 - 1),
         ir.Const(I32, -7),
-        ir.Const(VALUE_TYPES["bool"], True),
+        ir.Const(BOOL, True),
+        ir.Const(BOOL, False),
     ]
-    assert [literal(c, dialect) for c in consts] == ["7u", "4294967295u", "-7", "true"]
+    assert [literal(c, dialect) for c in consts] == ["7u", "4294967295u", "-7", "true", "false"]
