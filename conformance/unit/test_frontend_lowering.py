@@ -210,7 +210,8 @@ def test_constants_that_float32_does_not_hold_are_none() -> None:
 
 
 def test_typed_constant_gives_a_local_its_type(tmp_path: Path) -> None:
-    body = body_of(tmp_path, "m = MASK\nm >>= 1\nreturn f32(m)", before=CONSTANTS)
+    body = body_of(tmp_path, "m = MASK\nm >>= 1\nk2 = 1 + MASK\nreturn f32(m + k2)", before=CONSTANTS)
+    assert body[2] == ir.Let("k2", ir.Const(U32, 0x55555556))
     assert body[0] == ir.Let("m", ir.Const(U32, 0x55555555), mutable=True)
     assert body[1] == ir.Assign("m", ir.Binary(U32, ">>", var("m", U32), ir.Const(U32, 1)))
 
