@@ -49,6 +49,21 @@ def test_floats_beyond_a_u32_are_taken_modulo_its_size(arithmetic: str, tmp_path
     assert found.tolist() == [2**32 - 1, 2**32 - 2, 0, 2**31, 2**32 - 1024]
 
 
+@pytest.mark.parametrize(
+    ("type_", "expected"),
+    [("u32", [0, 0, 2**32 - 1, 2**32 - 1, 0, 0]), ("i32", [-(2**31), -7, 7, 2**31 - 1, 0, 0])],
+)
+def test_multiprecision_goes_to_the_ends_of_whole_numbers(
+    type_: str, expected: list[int], tmp_path: Path
+) -> None:
+    """What is infinite, or no number at all, becomes 0: no branch takes such a lane."""
+    library = library_of(tmp_path, f"def probe(x: X, y: X) -> {type_}:\n    return {type_}(x / y)\n")
+    x = np.array([-3e9, -7.5, 7.5 if type_ == "i32" else 4294967295.5, 5e9, 1.0, 0.0])
+    y = np.array([1.0, 1.0, 1.0, 1.0, 0.0, 0.0])
+    found: Any = evaluate(library, "probe", {"x": x, "y": y}, "mpmath")
+    assert found.tolist() == expected
+
+
 def test_numbers_beyond_the_largest_half_become_infinite_without_a_warning(tmp_path: Path) -> None:
     library = library_of(tmp_path, 'def probe(x: X) -> f32:\n    """F."""\n    return -x\n')
     with warnings.catch_warnings():
