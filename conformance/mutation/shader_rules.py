@@ -48,8 +48,45 @@ CALLS = {
 }
 GUARDS = {"max", "min", "clamp", "abs", "floor", "safe_sqrt", "normalize", "safe_normalize"}
 """Functions whose call is replaced by its first argument."""
-SYMMETRIC = {"min", "max", "clamp", "dot", "sin_angle"}
-"""Functions that give the same with their first two arguments exchanged (clamp: min of max)."""
+SYMMETRIC = {"min", "max", "clamp", "dot"}
+"""Built-in functions that give the same with their first two arguments exchanged (clamp: min of max)."""
+SYMMETRIC_OF_THE_LIBRARY = {
+    "ashikhmin_shirley_pdf",
+    "ashikhmin_shirley_value",
+    "blinn_phong_pdf",
+    "blinn_phong_value",
+    "cranley_patterson",
+    "fur_slab_depth",
+    "ggx_value",
+    "half_sum",
+    "inherited_shadow",
+    "lambert_value",
+    "lod_from_pdf",
+    "phong_pdf",
+    "phong_power",
+    "phong_value",
+    "poulin_fournier_value",
+    "satin_diffuse",
+    "satin_highlight",
+    "satin_highlight_eight",
+    "scheuermann_fade",
+    "shell_shadow",
+    "shell_sine_power",
+    "sin_angle",
+    "sin_angle_cosine",
+    "sin_angle_cross",
+    "sin_angle_half",
+    "strand_lobe_defect",
+    "strand_specular_half",
+    "strand_specular_half_cubic8",
+    "strand_specular_half_from4",
+    "strand_specular_half_from8",
+    "strand_value",
+    "ward_pdf",
+    "ward_value",
+    "wrapped_sum",
+}
+"""Those of the library: reciprocal lobes, angles, products. test_mutation.py holds them to it."""
 COMPONENTS = str.maketrans("xyzw", "yxxz")
 
 
@@ -103,6 +140,7 @@ def _call(node: ast.Call, name: str) -> Iterator[Offer]:
         yield "function", changed(node, func=ast.Name(CALLS[name], ast.Load()))
     if name in GUARDS and node.args:
         yield "guard removed", node.args[0]
-    if len(node.args) >= 2 and name not in SYMMETRIC and not name[0].isupper():
+    symmetric = name in SYMMETRIC or name in SYMMETRIC_OF_THE_LIBRARY
+    if len(node.args) >= 2 and not symmetric and not name[0].isupper():
         first, second, *rest = node.args
         yield "arguments exchanged", changed(node, args=[second, first, *rest])

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ast
 import functools
-from collections.abc import Iterable
+from collections.abc import Iterable, Set
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from conformance.mutation.isolated import KILLED, REFUSED, SURVIVED
 from conformance.mutation.plan import Group, Subject, tree_of
 from conformance.mutation.sites import Mutant
 from conformance.reference import PROPERTY_ONLY
-from conformance.textures import readers
+from conformance.textures import estimators, readers
 
 TABLE = "wgsl"
 """Whose guarantees a mutant must not lose: many a guard is there for what other targets may do."""
@@ -93,11 +93,17 @@ def points(name: str, uniform: int, family: int) -> list[Draw]:
 def notices(library: Library, names: Iterable[str], uniform: int, family: int) -> bool:
     """Whether the check of any of these functions fails."""
     return any(
-        not readers.passes(library, name)
+        _misreads(library, name)
         if load_library().function(name).reads_textures
         else _fails(library, name, points(name, uniform, family))
         for name in names
     )
+
+
+def _misreads(library: Library, name: str) -> bool:
+    if not readers.passes(library, name):
+        return True
+    return estimators.is_estimator(load_library(), name) and not estimators.keeps_promises(library, name)
 
 
 def _fails(library: Library, name: str, draws: list[Draw]) -> bool:
@@ -126,7 +132,10 @@ def loses_guarantees(library: Library, name: str, draws: list[Draw]) -> bool:
 
 
 def names_in(mutant: Mutant, subject: Subject) -> list[str]:
-    """The functions that a mutant changes: one, or those that mention a constant, or all of the file."""
+    """The functions that a mutant changes: one, or those that mention a constant, or all of the file.
+
+    Of a file without functions: those that mention the constant where it is imported.
+    """
     place = mutant.place.partition(".")[0]
     if place:
         return [place]
@@ -139,12 +148,31 @@ def names_in(mutant: Mutant, subject: Subject) -> list[str]:
         if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
     }
     functions = [n for n in body if isinstance(n, ast.FunctionDef)]
-    mentioning = [
+    if not functions:
+        return _importing(subject.path, assigned)
+    return _mentioning(functions, assigned) or [f.name for f in functions]
+
+
+def _mentioning(functions: Iterable[ast.FunctionDef], wanted: Set[str]) -> list[str]:
+    return [
         f.name
         for f in functions
-        if any(isinstance(part, ast.Name) and part.id in assigned for part in ast.walk(f))
+        if any(isinstance(part, ast.Name) and part.id in wanted for part in ast.walk(f))
     ]
-    return mentioning or [f.name for f in functions]
+
+
+def _importing(path: str, wanted: Set[str]) -> list[str]:
+    """The functions of other files that mention a constant of this one."""
+    module = path.removesuffix(".py").replace("/", ".")
+    resolver = load_library().resolver
+    files = {resolver.module_of(name): resolver.where(name) for name in resolver.function_names()}
+    found: list[str] = []
+    for file in filter(None, files.values()):
+        seen = {
+            local for local, (source, name) in file.imports.items() if source == module and name in wanted
+        }
+        found += _mentioning(file.functions.values(), seen)
+    return found
 
 
 def judge(group: Group, subject: Subject, mutant: Mutant) -> str:

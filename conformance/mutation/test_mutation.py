@@ -5,6 +5,7 @@ Plan.
   planted    every planted fault still fits its file, and the oracle's are all killed
   machinery  a mutant is one change; a harmless change survives, a deadly one is killed, an endless one too
   excuses    every entry of equivalent.toml excuses some mutant
+  symmetric  functions whose arguments are not exchanged give the same either way
 The trials run in a fresh process: forks of a process that has opened drivers would inherit their threads.
 """
 
@@ -18,8 +19,12 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
+from codegen.evaluate import evaluate
+from codegen.library import load_library
+from conformance.check.draws import draw
 from conformance.mutation import python_rules, shader_rules
 from conformance.mutation.plan import PLANTED, excuses, groups, mutants_of, planted, tree_of
 from conformance.mutation.report import confidence
@@ -27,6 +32,7 @@ from conformance.mutation.shaders import names_in
 from conformance.mutation.sites import Mutant, mutants, mutated
 
 ROOT = Path(__file__).parents[2]
+SEED = 20261123
 
 
 def outcomes(folder: Path, *arguments: str) -> list[dict[str, Any]]:
@@ -165,6 +171,46 @@ def test_a_constant_is_tried_where_it_is_used() -> None:
     found = mutants("a.py", subject.text, shader_rules.rule)
     tried = {m.before: names_in(m, subject) for m in found if not m.place}  # type: ignore[arg-type]
     assert tried == {"1.0": ["f"], "2.0": ["f", "g"]}
+
+
+def test_a_constant_of_a_file_without_functions_is_tried_where_it_is_imported() -> None:
+    path = "shaderlib/environment/domains.py"
+    subject = next(s for s in groups()["library"].subjects if s.path == path)
+    tried = {m.before: names_in(m, subject) for m in mutants_of(groups()["library"], subject)}
+    assert {"env_disc", "env_lod"} <= set(tried["1.2"])
+    assert "env_guarded_phong" in tried["0.5"]
+    assert "env_grid_phong" not in tried["0.5"]
+    assert all(tried.values())
+
+
+DOUBLE_ROUNDING = 2.0**-48
+"""What the rounding of sums and products in another order may differ by in double precision, relatively."""
+
+
+@pytest.mark.parametrize("name", sorted(shader_rules.SYMMETRIC_OF_THE_LIBRARY))
+def test_functions_that_are_called_symmetric_are(name: str) -> None:
+    function = load_library().function(name)
+    first, second = (p.name for p in function.parameters[:2])
+    for family in ("uniform", "domain_ends"):
+        given = {key: _wide(value) for key, value in draw(function, family, 400, SEED).inputs.items()}
+        exchanged = {**given, first: given[second], second: given[first]}
+        one, other = (np.asarray(evaluate(load_library(), name, x, "float64")) for x in (given, exchanged))
+        assert (np.abs(one - other) <= DOUBLE_ROUNDING * np.maximum(np.abs(one), np.abs(other))).all()
+        assert family != "uniform" or len(np.unique(one)) > 1
+
+
+def _wide(value: Any) -> Any:
+    return value.astype(np.float64) if value.dtype.kind == "f" else value
+
+
+def test_symmetric_functions_are_called() -> None:
+    called = {
+        part.func.id
+        for s in groups()["library"].subjects
+        for part in ast.walk(ast.parse(s.text))
+        if isinstance(part, ast.Call) and isinstance(part.func, ast.Name)
+    }
+    assert called >= shader_rules.SYMMETRIC_OF_THE_LIBRARY
 
 
 ROUNDING = 2.0**-40

@@ -143,12 +143,20 @@ def _filtered(own: _Estimate, w: Array, pdf: Array) -> Array:
 
 def _guarded(own: _Estimate, w: Array, pdf: Array) -> Array:
     """Filtered, but where the densest sample of all would look up less than level SHARP."""
-    u = np.zeros((len(w), 2))
+    return np.where(_sharpest(own) >= SHARP, _filtered(own, w, pdf), 0.0)
+
+
+def _sharpest(own: _Estimate) -> Array:
+    u = np.zeros((len(own.viewer), 2))
     if own.lobe == "poulin_fournier":  # its highlight starts where the diffuse part of the samples ends
         u[:, 0] = np.minimum(1.0 - real(own.parameters[1]), 1.0 - 2.0**-24)
     peak = own.part("sample", u)
-    sharpest = level_of_detail(own.env, to_world(own.frame, peak), own.part("pdf", peak), own.count)
-    return np.where(sharpest >= SHARP, _filtered(own, w, pdf), 0.0)
+    return level_of_detail(own.env, to_world(own.frame, peak), own.part("pdf", peak), own.count)
+
+
+def sharpest_level(lobe: str, env: Map, frame: Struct, v: Array, samples: Array, *parameters: Array) -> Array:
+    """The level at which the densest of a lobe's samples looks up a map."""
+    return _sharpest(_Estimate(lobe, env, frame, v, samples, parameters))
 
 
 def _grid(

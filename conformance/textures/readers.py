@@ -35,9 +35,14 @@ TABLE_SIZE = 256
 """Texels along a side of the table that the bound of strand_cosine_table speaks of."""
 
 
+def lobe_of(name: str) -> str:
+    """The lobe of an estimator."""
+    return next(lobe for lobe in sorted(LOBES, key=len, reverse=True) if name.endswith(f"_{lobe}"))
+
+
 def lobe_parameters(name: str) -> tuple[str, ...]:
     """The parameters of an estimator's lobe."""
-    return next(LOBES[lobe] for lobe in sorted(LOBES, key=len, reverse=True) if name.endswith(f"_{lobe}"))
+    return LOBES[lobe_of(name)]
 
 
 def estimator_inputs(name: str, kind: str, size: int = 32) -> dict[str, Any]:
@@ -113,16 +118,16 @@ def inputs_for(name: str) -> Iterator[dict[str, Any]]:
         raise KeyError(name)
 
 
-def _wide(value: Any) -> Any:
+def wide(value: Any) -> Any:
     """Inputs as the reference takes them."""
     if isinstance(value, dict):
-        return {name: _wide(part) for name, part in value.items()}
+        return {name: wide(part) for name, part in value.items()}
     return value if isinstance(value, list) or value.dtype == np.uint32 else value.astype(np.float64)
 
 
 def expected(name: str, inputs: dict[str, Any]) -> Any:
     """The reference's values."""
-    return reference_for(name)(*[_wide(inputs[p.name]) for p in load_library().function(name).parameters])
+    return reference_for(name)(*[wide(inputs[p.name]) for p in load_library().function(name).parameters])
 
 
 def within(name: str, inputs: dict[str, Any], got: Any, exact: Any = None) -> bool:

@@ -3,7 +3,9 @@
 Plan. The sources below shaderlib/environment are what the template gives; every lobe has every estimator,
 with the library's parameters. The reference, which tests on drivers trust, agrees with the lookups of
 conformance/light away from the rim, is continuous across it, and finds a constant sky at every level. What
-`vair env` prepares, the functions read: directions keep their axes.
+`vair env` prepares, the functions read: directions keep their axes. Estimators keep in float32 what they
+promise beside their bounds: of few samples, about the step of the guard, at the limit, at the corners, and
+with quotients and roots off in their last bits.
 """
 
 import numpy as np
@@ -19,9 +21,13 @@ from conformance.reference import reference_for
 from conformance.reference.environment import BLEND_HEIGHT, ESTIMATORS
 from conformance.reference.lobes import LOBES
 from conformance.textures.environments import looks, paraboloid, parameters, views
+from conformance.textures.estimators import is_estimator, keeps_promises, peak_inputs
 
 SEED = 20260808
 LIBRARY = load_library()
+USUAL = ("env_guarded_lambert", "env_monte_carlo_phong", "env_grid_blinn_phong")
+"""What a normal run holds to its promises; the others stand in the nightly one."""
+SUMS = [name for name in LIBRARY.documented if is_estimator(LIBRARY, name)]
 (RADIANCE,) = LIBRARY.bounds["env_radiance"]
 COUNT = 400
 CLEAR_OF_STEPS = 0.3
@@ -89,3 +95,23 @@ def test_prepared_maps_keep_their_axes(name: str) -> None:
     inputs = {"env": chain, "w": w} | ({"lod": np.zeros(len(w))} if name == "env_radiance" else {})
     assert len(w) > 0
     assert np.abs(evaluate(LIBRARY, name, inputs) - (w > 0.0)).max() <= RADIANCE.bound
+
+
+@pytest.mark.parametrize(
+    "name", [n if n in USUAL else pytest.param(n, marks=pytest.mark.nightly) for n in SUMS]
+)
+def test_estimators_keep_what_they_promise(name: str) -> None:
+    assert keeps_promises(LIBRARY, name)
+
+
+def test_views_about_the_step_of_the_guard_are_filtered_on_one_side() -> None:
+    """Half of the views each: there the guarded estimator is the filtered one, here the unfiltered one."""
+    inputs = peak_inputs("env_guarded_ggx")
+    guarded, filtered, plain = (
+        np.asarray(evaluate(LIBRARY, f"env_{estimator}_ggx", inputs))
+        for estimator in ("guarded", "filtered", "monte_carlo")
+    )
+    half = len(guarded) // 2
+    assert np.array_equal(guarded[half:], filtered[half:])
+    assert np.abs(guarded[:half] - plain[:half]).max() <= RADIANCE.bound
+    assert np.abs(filtered[:half] - plain[:half]).max() > RADIANCE.bound
