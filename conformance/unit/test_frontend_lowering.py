@@ -274,6 +274,14 @@ def test_loop_bounds_are_constants(bounds: str, start: int, stop: int, tmp_path:
     assert body[1] == ir.For("i", start, stop, (step,))
 
 
+@pytest.mark.parametrize(("name", "type_"), [("n", U32), ("k", I32)])
+def test_loop_that_a_parameter_ends_is_numbered_by_its_type(name: str, type_: Type, tmp_path: Path) -> None:
+    text = f"a = 0.0\nfor i in range(min({name}, COUNT)):\n    a += f32(i)\nreturn a"
+    body = body_of(tmp_path, text, before=CONSTANTS)
+    step = ir.Assign("a", ir.Binary(F32, "+", var("a"), ir.Convert(F32, var("i", type_))))
+    assert body[1] == ir.For("i", 0, 3, (step,), limit=var(name, type_))
+
+
 PAIR = "@struct\nclass Pair:\n    '''Two of them.'''\n    first: X\n    second: Annotated[vec3, Unit()]\n"
 
 
