@@ -49,6 +49,7 @@ EXPRESSIONS: dict[str, tuple[str, ir.Expr]] = {
     "parentheses": ("x * (x + x)", ir.Binary(F32, "*", X, ir.Binary(F32, "+", X, X))),
     "folded in double": ("x * (1.0 / 3.0)", ir.Binary(F32, "*", X, f32(1.0 / 3.0))),
     "rounded once": ("0.1 + 0.2 + 1e-9", f32(0.1 + 0.2 + 1e-9)),
+    "digits that single precision loses": ("0.1 + 0.2 - 0.3", f32(0.1 + 0.2 - 0.3)),
     "folded power": ("2.0 ** -24", f32(2.0**-24)),
     "folded mixture": ("2 * 0.25", f32(0.5)),
     "folded difference": ("0.3 - 0.1", f32(0.3 - 0.1)),
