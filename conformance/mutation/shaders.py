@@ -3,7 +3,8 @@
 A mutant is first checked on few points, and on more points and in its callers where that shows nothing;
 last, it may not lose what WGSL guarantees of the function (conformance.guarantees). Functions that read maps
 are held to their references on maps of conformance.textures instead, those that no public function reaches to
-the formulas of conformance.check.parts.
+the formulas of conformance.check.parts. What sources promise beside a bound is checked for all of them, see
+conformance.check.promises and conformance.textures.estimators.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from codegen.intervals import permitted
 from codegen.ir.nodes import callees
 from codegen.ir.verify import MalformedIRError
 from codegen.library import Library, default_root, load_library
-from conformance.check import engine, parts
+from conformance.check import engine, parts, promises
 from conformance.check.engine import Draw
 from conformance.execute.further import codomains, leaves_codomain, with_further_bounds
 from conformance.mutation.isolated import KILLED, REFUSED, SURVIVED
@@ -93,17 +94,11 @@ def points(name: str, uniform: int, family: int) -> list[Draw]:
 def notices(library: Library, names: Iterable[str], uniform: int, family: int) -> bool:
     """Whether the check of any of these functions fails."""
     return any(
-        _misreads(library, name)
+        not readers.passes(library, name)
         if load_library().function(name).reads_textures
         else _fails(library, name, points(name, uniform, family))
         for name in names
     )
-
-
-def _misreads(library: Library, name: str) -> bool:
-    if not readers.passes(library, name):
-        return True
-    return estimators.is_estimator(load_library(), name) and not estimators.keeps_promises(library, name)
 
 
 def _fails(library: Library, name: str, draws: list[Draw]) -> bool:
@@ -189,8 +184,12 @@ def judge(group: Group, subject: Subject, mutant: Mutant) -> str:
     users = list(dict.fromkeys(user for name in changed for user in public_users(name, 50)))
     own = [name for name in users if name in changed] or users[:1]
     others = [name for name in users if name not in own]
+    if not all(promises.keeps(library, name) for name in dict.fromkeys([*changed, *users])):
+        return KILLED
     uniform, family, _ = group.first
     if notices(library, own, uniform, family):
+        return KILLED
+    if not all(estimators.keeps_promises(library, name) for name in own if estimators.is_estimator(name)):
         return KILLED
     uniform, family, more = group.second
     if notices(library, own, uniform, family):

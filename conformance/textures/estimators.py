@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from codegen.evaluate import evaluate
-from codegen.frontend.source import SourceFile
-from codegen.library import Library
-from conformance.reference.environment import SHARP, sharpest_level
+from codegen.library import Library, load_library
+from conformance.check.rewritten import copy, rounded
+from conformance.reference.environment import MOST_SAMPLES, SHARP, sharpest_level
 from conformance.textures.environments import broad_parameters, corners, paraboloid, views
 from conformance.textures.readers import (
     LANES,
@@ -72,53 +72,17 @@ def _rows(value: Any, chosen: Array) -> Any:
     return value[chosen]
 
 
-class _Rounded(ast.NodeTransformer):
-    """Every quotient and root times a factor close to 1."""
-
-    def __init__(self, factor: float) -> None:
-        self.factor = factor
-
-    def _times(self, node: ast.expr) -> ast.expr:
-        return ast.BinOp(node, ast.Mult(), ast.Constant(self.factor))
-
-    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
-        self.generic_visit(node)
-        return self._times(node) if isinstance(node.op, ast.Div) else node
-
-    def visit_Call(self, node: ast.Call) -> ast.expr:
-        self.generic_visit(node)
-        return self._times(node) if isinstance(node.func, ast.Name) and node.func.id == "sqrt" else node
-
-
-def _copy(library: Library, module: str) -> tuple[Library, SourceFile]:
-    """The library once more, as far as a module needs it, and the module's source in it, to be changed."""
-    copied = Library(library.root)
-    for needed, file in library.resolver.needed_files([module]).items():
-        own = copied.resolver.file(needed)
-        own.functions.update(file.functions)
-        own.values.update(file.values)
-    return copied, copied.resolver.file(module)
-
-
 def with_limit(library: Library, name: str, limit: int) -> Library:
     """The library with another limit of the number of samples."""
-    copied, _ = _copy(library, library.resolver.module_of(name))
+    copied, _ = copy(library, library.resolver.module_of(name))
     copied.resolver.file(DOMAINS).values["MOST_SAMPLES"] = ast.Constant(limit)
     return copied
 
 
-def rounded(library: Library, name: str, factor: float) -> Library:
-    """The library with every quotient and root that a function writes times a factor close to 1."""
-    copied, file = _copy(library, library.resolver.module_of(name))
-    text = ast.unparse(file.functions[name])
-    changed = ast.fix_missing_locations(_Rounded(factor).visit(ast.parse(text).body[0]))
-    assert isinstance(changed, ast.FunctionDef)
-    file.functions[name] = changed
-    return copied
-
-
 def stops_at_the_limit(library: Library, name: str) -> bool:
-    """Whether more samples than the limit are as good as that many."""
+    """Whether the limit is the documented one, and more samples are as good as that many."""
+    if library.resolver.constant(library.resolver.file(DOMAINS), "MOST_SAMPLES") != MOST_SAMPLES:
+        return False
     few = with_limit(library, name, FEW)
     inputs = broad_inputs(name)
 
@@ -160,6 +124,7 @@ def keeps_promises(library: Library, name: str) -> bool:
     )
 
 
-def is_estimator(library: Library, name: str) -> bool:
-    """Whether a function sums what a lobe reflects of a map."""
-    return name.startswith("env_") and any(p.name == "shift" for p in library.function(name).parameters)
+def is_estimator(name: str) -> bool:
+    """Whether a function of the library sums what a lobe reflects of a map."""
+    parameters = load_library().function(name).parameters
+    return name.startswith("env_") and any(p.name == "shift" for p in parameters)

@@ -31,6 +31,8 @@ MANY = (17, 31, 40)
 """Numbers of samples for lobes of which every sample shows something; 17 and 31 just miss another row."""
 DIRECTIONS = 2000
 SHADES = ("factored_shade", "factored_strand_shade", "factored_satin_shade")
+SCALE = np.array([1.0, 0.75, 0.5], np.float32)
+"""What factors are multiplied by: another number for each channel."""
 TABLE_SIZE = 256
 """Texels along a side of the table that the bound of strand_cosine_table speaks of."""
 
@@ -91,12 +93,12 @@ def inputs_for(name: str) -> Iterator[dict[str, Any]]:
     """Inputs for a public function that reads maps; raises KeyError for another one."""
     if name in SHADES:
         l, v = directions(DIRECTIONS)
-        yield {**factors(name), "l": l, "v": v}
+        yield {**factors(name), "scale": SCALE, "l": l, "v": v}
     elif name == "strand_cosine_table":
         x, y, function = two_arguments(load_library(), "strand_cosine", {})
         x, y = (replace(end, warp="angle") for end in (x, y))
         table = made(x, y, function, TABLE_SIZE, TABLE_SIZE)
-        levels = [np.repeat(table.values[:, :, None], 4, axis=2)]
+        levels = [table.values[:, :, None] * np.array([1.0, 0.0, 0.0, 0.0], table.values.dtype)]
         cos_l, cos_v = cosines(DIRECTIONS)
         yield {"table": levels, "cos_l": cos_l, "cos_v": cos_v}
     elif name in ("environment_latlong", "env_radiance", "env_prefiltered"):
