@@ -172,7 +172,9 @@ def _elements(where: str, type_: ArrayType, given: Any) -> dict[str, Any]:
     if a.shape == shape:
         a = a[None]
     if a.shape[1:] != shape:
-        raise UserError(f"{where} has shape {a.shape}, but {type_.name} needs (N, {str(shape)[1:]}")
+        raise UserError(
+            f"{where} has shape {a.shape}, but {type_.name} needs (N, {', '.join(map(str, shape))})"
+        )
     return {f.name: a[:, k] for k, f in enumerate(type_.fields)}
 
 

@@ -88,6 +88,22 @@ def test_elements_are_drawn_from_their_domain() -> None:
     assert permitted(EXTENDED, "lambert_sum", drawn, "wgsl").contains(single).all()
 
 
+def test_arrays_of_numbers_go_in_as_columns() -> None:
+    """One row for each lane, or one for all."""
+    type_ = array_of(F32, 2)
+    elements = [ir.Index(F32, ir.Var(type_, "a"), ir.Const(I32, k)) for k in (0, 1)]
+    body = (ir.Return(ir.Binary(F32, "-", elements[0], elements[1])),)
+    parameters = (ir.Parameter("a", type_, None),)
+    f = ir.Function("gap", "", "base", None, parameters, F32, body, ir.Doc("", {}), Place("", 1))
+    extended = LIBRARY.with_functions([f])
+    a = np.array([[3.0, 1.0], [0.5, 8.0], [2.0, -2.0]], np.float32)
+    np.testing.assert_array_equal(evaluate(extended, "gap", {"a": a}), [2.0, -7.5, 4.0])
+    np.testing.assert_array_equal(evaluate(extended, "gap", {"a": a[1]}), [-7.5])
+    with pytest.raises(UserError) as caught:
+        evaluate(extended, "gap", {"a": a.T})
+    assert str(caught.value) == "gap: a has shape (2, 3), but f32[2] needs (N, 2)"
+
+
 def test_index_that_lanes_choose() -> None:
     """An element by a parameter: what a lane names, and the hull where a table leaves the number open."""
     type_ = array_of(F32, 4)
@@ -97,6 +113,9 @@ def test_index_that_lanes_choose() -> None:
         "pick", "", "base", None, (ir.Parameter("k", U32, None),), F32, body, ir.Doc("", {}), Place("", 1)
     )
     extended = LIBRARY.with_functions([f])
+    for some in ([3], [1, 2]):
+        few = np.array(some, np.uint32)
+        np.testing.assert_array_equal(evaluate(extended, "pick", {"k": few}), few.astype(np.float32) ** 2)
     k = np.array([0, 1, 2, 3, 2], np.uint32)
     np.testing.assert_array_equal(evaluate(extended, "pick", {"k": k}), k.astype(np.float32) ** 2)
     assert permitted(extended, "pick", {"k": k}, "wgsl").contains(k.astype(np.float32) ** 2).all()
