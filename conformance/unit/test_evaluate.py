@@ -48,6 +48,7 @@ FORMULAS: dict[str, tuple[str, Callable[[Floats, Floats, Floats], Any]]] = {
     ),
     "chosen": ("a if b < c else -a", lambda a, b, c: np.where(b < c, a, -a)),
     "scaled": ("(vec2(a, b) * c).y", lambda a, b, c: b * c),
+    "divided": ("(vec2(a, b) / c).x", lambda a, b, c: a / c),
     "floor": ("a - floor(a)", lambda a, b, c: a - np.floor(a)),
 }
 
@@ -284,6 +285,7 @@ def test_bad_input_gets_one_sentence(name: str, tmp_path: Path) -> None:
 BAD_STRUCTS: dict[str, tuple[Any, str]] = {
     "array": (np.zeros(3), "swapped: o is a Outer: give its fields"),
     "missing": ({"inner": {"angle": 1.0, "axis": [0, 0, 1]}, "count": 1}, "swapped: o lacks flag"),
+    "number": ({**outer(1), "flag": [1]}, "swapped: o.flag holds int64, but bool is needed"),
     "unknown": ({**outer(1), "flags": True}, 'swapped: o has no field "flags"; did you mean "flag"?'),
     "deep": ({**outer(1), "inner": {"angle": 1.0}}, "swapped: o.inner lacks axis"),
 }

@@ -20,7 +20,9 @@ import pytest
 
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
-from codegen.evaluate.arrays import ARITHMETICS
+from codegen.evaluate.arrays import ARITHMETICS, convert_inputs
+from codegen.evaluate.arrays import arithmetic as find_arithmetic
+from codegen.ir.types import F32, VEC3, Type
 from codegen.passes.half import HalfRules
 from conformance.unit.support.sources import library_of
 
@@ -51,15 +53,15 @@ def test_floats_beyond_a_u32_are_taken_modulo_its_size(arithmetic: str, tmp_path
 
 @pytest.mark.parametrize(
     ("type_", "expected"),
-    [("u32", [0, 0, 2**32 - 1, 2**32 - 1, 0, 0]), ("i32", [-(2**31), -7, 7, 2**31 - 1, 0, 0])],
+    [("u32", [0, 0, 2**32 - 1, 2**32 - 1, 0, 0, 0]), ("i32", [-(2**31), -7, 7, 2**31 - 1, 0, 0, 0])],
 )
 def test_multiprecision_goes_to_the_ends_of_whole_numbers(
     type_: str, expected: list[int], tmp_path: Path
 ) -> None:
     """What is infinite, or no number at all, becomes 0: no branch takes such a lane."""
     library = library_of(tmp_path, f"def probe(x: X, y: X) -> {type_}:\n    return {type_}(x / y)\n")
-    x = np.array([-3e9, -7.5, 7.5 if type_ == "i32" else 4294967295.5, 5e9, 1.0, 0.0])
-    y = np.array([1.0, 1.0, 1.0, 1.0, 0.0, 0.0])
+    x = np.array([-3e9, -7.5, 7.5 if type_ == "i32" else 4294967295.5, 5e9, 1.0, -1.0, 0.0])
+    y = np.array([1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
     found: Any = evaluate(library, "probe", {"x": x, "y": y}, "mpmath")
     assert found.tolist() == expected
 
@@ -70,6 +72,18 @@ def test_numbers_beyond_the_largest_half_become_infinite_without_a_warning(tmp_p
         warnings.simplefilter("error")
         found: Any = evaluate(library, "probe", {"x": [65504.0, 1e6, -1e6]}, "float16", rules=HalfRules())
     assert found.tolist() == [-65504.0, -np.inf, np.inf]
+
+
+def test_single_values_are_repeated_for_all_lanes_unless_one_is_enough() -> None:
+    """What goes to a device is whole; the evaluator keeps one lane of what all lanes share."""
+    types: dict[str, Type] = {"x": F32, "v": VEC3}
+    given = {"x": [1.0, 2.0], "v": [3.0, 4.0, 5.0]}
+    whole, count = convert_inputs(types, given, find_arithmetic("float32"), "probe")
+    kept, same = convert_inputs(types, given, find_arithmetic("float32"), "probe", repeated=False)
+    assert count == same == 2
+    assert np.asarray(whole["v"]).tolist() == [[3.0, 4.0, 5.0]] * 2
+    assert np.asarray(kept["v"]).tolist() == [[3.0, 4.0, 5.0]]
+    assert np.asarray(whole["x"]).tolist() == np.asarray(kept["x"]).tolist() == [1.0, 2.0]
 
 
 def test_scalar_of_a_wrong_shape(tmp_path: Path) -> None:
@@ -89,6 +103,23 @@ def test_multiprecision_takes_inputs_as_they_are(tmp_path: Path) -> None:
         assert all(isinstance(value, mpmath.mpf) for value in found)
         assert [value * 3 - mpmath.mpf(float(given)) for value, given in zip(found, x, strict=True)] == [0, 0]
         assert found[1] != mpmath.mpf(1.0 / 3.0)
+
+
+def test_multiprecision_takes_its_own_numbers_whole(tmp_path: Path) -> None:
+    library = library_of(tmp_path, "def probe(x: X, v: V) -> f32:\n    return x * v.z\n")
+    with mpmath.workdps(60):
+        third = mpmath.mpf(1) / 3
+        inputs = {"x": np.array([third, 2 * third]), "v": [[0, 0, third]]}
+        found: Any = evaluate(library, "probe", inputs, "mpmath")
+        assert list(found) == [third * third, 2 * third * third]
+
+
+@pytest.mark.parametrize("text", ["0.1", "min(0.1, 3.0)", "x if x < 2.0 else 0.5", "f32(u32(x))"])
+def test_multiprecision_gives_its_own_numbers(text: str, tmp_path: Path) -> None:
+    """Also where nothing is calculated with a constant."""
+    library = library_of(tmp_path, f"def probe(x: X) -> f32:\n    return {text}\n")
+    found: Any = evaluate(library, "probe", {"x": [1.0, 3.0]}, "mpmath")
+    assert all(isinstance(value, mpmath.mpf) for value in found)
 
 
 @pytest.mark.parametrize("text", ["x * x * x", "x - x * x", "x * v.y * v.z", "min(x, v.x) * x * x"])

@@ -4,6 +4,7 @@ Plan.
   scene   a general function with two loops over arrays of lights, with a memory and without
   forms   sums, products, a number of the iteration, a value that is carried and used, a branch inside, an
           assigned local, what is the same in every iteration, a call: whatever is taken apart and what is not
+  lookups likewise
   apart   which of these loops are taken apart
   returns a loop that returns ends, in all lanes or in some
   lanes   where a parameter ends a loop, every lane runs as often as its own number says, also in a branch and
@@ -27,6 +28,7 @@ from codegen.library import Library, load_library
 from codegen.scene.description.document import read_scene
 from codegen.scene.general import general_function
 from codegen.scene.proof.points import draw as scene_points
+from conformance.textures.maps import chain
 from conformance.unit.support.sources import library_of
 
 LIBRARY = load_library()
@@ -39,6 +41,7 @@ FORMS = {
     "carried": ("a = sin(total)\n        total = a + x", False),
     "branch": ("if x > f32(i):\n            total = total + y", False),
     "shared": ("a = sin(y)\n        total = total + a * f32(i) + cos(y)", True),
+    "loop in a call": ("total = total + powers(x * f32(i))", True),
     "call": ("total = total + term(x * f32(i), y, vec3(x, y, 1.0)) * term(y, x, vec3(f32(i)))", True),
 }
 """A loop's body, and whether it is taken apart."""
@@ -54,6 +57,14 @@ def term(a: X, b: X, v: V) -> f32:
     if b > a:
         total = total - a
     return total if a > 3.0 else cross(v, vec3(b)).z
+
+
+@helper
+def powers(a: X) -> f32:
+    total = 0.0
+    for k in range(4):
+        total = total * 0.5 + a * f32(k)
+    return total
 
 
 """
@@ -105,10 +116,50 @@ def test_forms_of_loops(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, form: s
     assert one == other
 
 
+LOOKED_UP = """def probe(t: Annotated[Texture, Edges("repeat", "clamp")], uv: P, lod: X) -> f32:
+    total = 0.0
+    for i in range(3):
+        total = total + lookup_level(t, uv * f32(i), lod).x * lookup(t, vec2(f32(i) * 0.25)).y
+        total = total + lookup_level(t, vec2(0.25, 0.5), lod * f32(i)).z
+        total = total + lookup_level(t, uv, f32(i)).w
+    return total
+
+
+"""
+
+
+@pytest.mark.parametrize("memory", [True, False])
+def test_lookups_in_loops(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, memory: bool) -> None:
+    """At places and levels that are the same in all lanes, in all iterations, or in neither."""
+    library = library_of(tmp_path, LOOKED_UP)
+    (loop,) = [s for s in ir.statements(library.function("probe").body) if isinstance(s, ir.For)]
+    assert together(loop)
+    generator = np.random.default_rng(5)
+    inputs = {
+        "t": chain(8, 4, 3, 7),
+        "uv": generator.uniform(-1.0, 2.0, (COUNT, 2)).astype(np.float32),
+        "lod": generator.uniform(0.0, 2.0, COUNT).astype(np.float32),
+    }
+    one, other = both(monkeypatch, library, "probe", inputs, memory)
+    assert one == other
+
+
 RETURNS = """def f(x: X, y: X) -> f32:
     for i in range(3):
         return x + f32(i)
     return y
+
+
+def directed(x: X, y: X) -> f32:
+    v = vec_of(x, y)
+    return v.x + v.y * 10.0
+
+
+@helper
+def vec_of(x: X, y: X) -> vec2:
+    for i in range(3):
+        return vec2(x + f32(i), y)
+    return vec2(y)
 
 
 def g(x: X, y: X) -> f32:
@@ -129,13 +180,22 @@ def test_a_loop_that_returns_ends(tmp_path: Path) -> None:
     library = library_of(tmp_path, RETURNS)
     inputs = {"x": np.array([-1.0, 0.5, 3.0], np.float32), "y": np.array([8.0, 9.0, 7.0], np.float32)}
     for memory in (None, Memory()):
-        for name, expected in (("f", [-1.0, 0.5, 3.0]), ("g", [-1.0, 9.0, 7.0])):
+        for name, expected in (
+            ("f", [-1.0, 0.5, 3.0]),
+            ("directed", [79.0, 90.5, 73.0]),
+            ("g", [-1.0, 9.0, 7.0]),
+        ):
             found: Any = evaluate(library, name, inputs, memory=memory)
             assert found.tolist() == expected
 
 
 LANES = """def f(x: X, n: u32, inside: bool) -> f32:
     total = x
+    if inside:
+        for k in range(3):
+            total = total + f32(k) * 0.25
+        for i in range(min(n, 2)):
+            total = total + 0.125
     for i in range(min(n, 6)):
         total = total * 2.0 + f32(i)
         if total > 50.0:
@@ -154,6 +214,11 @@ LANES = """def f(x: X, n: u32, inside: bool) -> f32:
 def one_lane(x: float, n: int, inside: bool) -> float:
     """What LANES says, as Python says it; its numbers are exact."""
     total = x
+    if inside:
+        for k in range(3):
+            total += k * 0.25
+        for _ in range(min(n, 2)):
+            total += 0.125
     for i in range(min(n, 6)):
         total = total * 2.0 + i
         if total > 50.0:
@@ -175,3 +240,15 @@ def test_each_lane_runs_as_often_as_its_own_number_says(tmp_path: Path) -> None:
     assert len(set(expected)) > len(lanes) // 3
     for memory in (None, Memory()):
         np.testing.assert_array_equal(np.asarray(evaluate(library, "f", inputs, memory=memory)), expected)
+
+
+@pytest.mark.parametrize("most", [0, 1, 3])
+def test_loops_run_as_long_as_the_lanes_that_take_part(most: int, tmp_path: Path) -> None:
+    """Be it longer or shorter than the numbers of those that do not; and without any lane."""
+    library = library_of(tmp_path, LANES)
+    lanes = [(0.5, most, True), (0.5, 3 - most, False), (-1.0, most, True)]
+    for some in (lanes, lanes[:1], lanes[1:2], []):
+        x, n, inside = (np.array([lane[k] for lane in some]) for k in range(3))
+        inputs = {"x": x.astype(np.float32), "n": n.astype(np.uint32), "inside": inside.astype(bool)}
+        found: Any = evaluate(library, "f", inputs)
+        assert found.tolist() == [one_lane(*lane) for lane in some]

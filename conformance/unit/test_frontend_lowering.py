@@ -20,6 +20,7 @@ from conformance.unit.support.sources import library_of, write_library
 
 HEAD = "def probe(x: X, n: u32, k: i32, flag: bool, v: V, p: P) -> {}:\n"
 X, N, K, FLAG = ir.Var(F32, "x"), ir.Var(U32, "n"), ir.Var(I32, "k"), ir.Var(BOOL, "flag")
+TRUE = ir.Const(BOOL, True)
 V, P = ir.Var(VEC3, "v"), ir.Var(VEC2, "p")
 
 
@@ -117,6 +118,7 @@ EXPRESSIONS: dict[str, tuple[str, ir.Expr]] = {
         "flag and flag and True",
         ir.Binary(BOOL, "and", ir.Binary(BOOL, "and", FLAG, FLAG), ir.Const(BOOL, True)),
     ),
+    "terms of logic that are known": ("True and 1.0 < 2.0 and flag", ir.Binary(BOOL, "and", TRUE, FLAG)),
     "conditional": ("x if flag else 0.0", ir.Select(F32, FLAG, X, f32(0.0))),
     "conditional of literals": ("1 if flag else n", ir.Select(U32, FLAG, ir.Const(U32, 1), N)),
 }

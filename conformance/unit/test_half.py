@@ -158,8 +158,8 @@ def test_rules_are_the_librarys_unless_others_are_given(tmp_path: Path) -> None:
 
 
 def test_strict_emulation_flushes_and_marks_overflow(tmp_path: Path) -> None:
-    library = library_of(tmp_path, 'def f(x: X) -> f32:\n    """F."""\n    return x * x\n')
-    x = np.array([1e-3, 0.5, 300.0])
+    library = library_of(tmp_path, 'def f(x: X) -> f32:\n    """F."""\n    return x * abs(x)\n')
+    x = np.array([1e-3, 0.5, 300.0, 2.0**-7, -1e-3, -0.5, -300.0, -(2.0**-7)])
     kept, strict = (
         evaluate(library, "f", {"x": x}, a, rules=HalfRules()) for a in ("float16", "float16-strict")
     )
@@ -168,8 +168,22 @@ def test_strict_emulation_flushes_and_marks_overflow(tmp_path: Path) -> None:
     assert 0.0 < kept[0] < 2.0**-14
     assert strict[0] == 0.0
     assert kept[1] == strict[1] == 0.25
-    assert np.isinf(kept[2])
+    assert kept[2] == np.inf
     assert np.isnan(strict[2])
+    assert kept[3] == strict[3] == 2.0**-14  # the smallest normal half
+    assert np.array_equal(kept[4:], -kept[:4])
+    assert np.array_equal(strict[4:], -strict[:4], equal_nan=True)
+
+
+def test_kept_vectors_are_computed_in_single_precision_and_rounded_once(tmp_path: Path) -> None:
+    text = 'def f(a: V, x: X) -> vec3:\n    """F."""\n    return a * a * x\n'
+    rules = HalfRules({}, {"f": frozenset("a")})
+    library = library_of(tmp_path, text)
+    a = np.array([[1.0 + 2.0**-12, 1.0 + 2.0**-20, 0.1]], np.float32)
+    got = evaluate(library, "f", {"a": a, "x": [3.0]}, "float16", rules=rules)
+    assert isinstance(got, np.ndarray)
+    assert got.dtype == np.float16
+    assert np.array_equal(got, (a * a).astype(np.float16) * np.float16(3.0))
 
 
 @pytest.mark.parametrize("base", DIALECTS, ids=dialect_id)

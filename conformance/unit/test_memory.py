@@ -36,6 +36,16 @@ def bits(value: Any) -> list[bytes]:
     return [np.ascontiguousarray(value).tobytes()]
 
 
+class Counting(Memory):
+    """Counts what is evaluated."""
+
+    evaluated = 0
+
+    def keep(self, key: Key, made: Value, of: list[Value]) -> Value:
+        self.evaluated += 1
+        return super().keep(key, made, of)
+
+
 def check(library: Library, name: str, inputs: Any, memory: Memory) -> None:
     plain = evaluate(library, name, inputs)
     assert bits(evaluate(library, name, inputs, memory=memory)) == bits(plain)
@@ -59,19 +69,11 @@ def test_loops_are_remembered_light_by_light(tmp_path: Path) -> None:
     scene = read_scene(tmp_path / "scene.toml", LIBRARY)
     general = general_function(scene)
     library = LIBRARY.with_functions([general.function])
-    memory, inputs = Memory(), scene_points(scene, general, COUNT).inputs
-    for _ in range(2):
-        check(library, general.function.name, inputs, memory)
-
-
-class Counting(Memory):
-    """Counts what is evaluated."""
-
-    evaluated = 0
-
-    def keep(self, key: Key, made: Value, of: list[Value]) -> Value:
-        self.evaluated += 1
-        return super().keep(key, made, of)
+    memory, inputs = Counting(), scene_points(scene, general, COUNT).inputs
+    check(library, general.function.name, inputs, memory)
+    once = memory.evaluated
+    check(library, general.function.name, inputs, memory)
+    assert memory.evaluated == once + 1  # what comes after the loops
 
 
 TWO = """def first(x: X, y: X) -> f32:
@@ -95,6 +97,29 @@ def test_what_is_remembered_is_not_evaluated_again(tmp_path: Path) -> None:
         evaluate(library, name, inputs, memory=memory)
         counts.append(memory.evaluated - before)
     assert counts == [3, 0, 1]
+
+
+CALLS = """@helper
+def squared(y: X) -> f32:
+    return y * y
+def probe(x: X, y: X) -> f32:
+    z = y
+    a = squared(z)
+    return x * a + squared(y)
+"""
+
+
+def test_calls_are_remembered_by_their_arguments(tmp_path: Path) -> None:
+    """The square, the call and the sum once; then, with another x, the sum alone."""
+    library, memory = library_of(tmp_path, CALLS), Counting()
+    y = np.array([0.5, 3.0], np.float32)
+    counts = []
+    for x in (np.array([2.0, 4.0], np.float32), np.array([-1.0, 0.25], np.float32)):
+        before = memory.evaluated
+        found: Any = evaluate(library, "probe", {"x": x, "y": y}, memory=memory)
+        counts.append(memory.evaluated - before)
+        assert np.array_equal(found, x * y**2 + y**2)
+    assert counts == [3, 1]
 
 
 def test_other_inputs_under_the_same_names_are_other_values() -> None:
