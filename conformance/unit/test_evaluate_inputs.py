@@ -74,6 +74,21 @@ def test_numbers_beyond_the_largest_half_become_infinite_without_a_warning(tmp_p
     assert found.tolist() == [-65504.0, -np.inf, np.inf]
 
 
+ENDS = {"u32": (0, 2**32 - 1), "i32": (-(2**31), 2**31 - 1)}
+
+
+@pytest.mark.parametrize("type_", ENDS)
+def test_whole_numbers_go_in_up_to_their_ends(type_: str, tmp_path: Path) -> None:
+    library = library_of(tmp_path, f"def probe(n: {type_}) -> {type_}:\n    return n\n")
+    low, high = ENDS[type_]
+    found: Any = evaluate(library, "probe", {"n": [low, high]})
+    assert found.tolist() == [low, high]
+    for beyond in (low - 1, high + 1):
+        with pytest.raises(UserError) as caught:
+            evaluate(library, "probe", {"n": [0, beyond]})
+        assert str(caught.value) == f"probe: n holds a number outside [{low}, {high}]"
+
+
 def test_single_values_are_repeated_for_all_lanes_unless_one_is_enough() -> None:
     """What goes to a device is whole; the evaluator keeps one lane of what all lanes share."""
     types: dict[str, Type] = {"x": F32, "v": VEC3}
