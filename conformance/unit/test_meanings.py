@@ -155,6 +155,16 @@ def test_exact_division_by_zero_has_the_values_of_floats() -> None:
     assert math.isnan(got[4])
 
 
+def test_exact_roots_and_logarithms_where_there_are_none() -> None:
+    """Lanes that a branch does not take get there; they hold real numbers or none."""
+    (root,) = meaning("sqrt", "mpmath", column(F32, [-1.0], "mpmath"))
+    assert root != root
+    assert meaning("sqrt", "mpmath", column(F32, [0.0], "mpmath"))[0] == 0
+    for name in ("log", "log2"):
+        found = meaning(name, "mpmath", column(F32, [0.0, -1.0], "mpmath"))
+        assert [float(x) for x in found] == [-math.inf, -math.inf]
+
+
 A = [(1.0, 2.0, 3.0, 5.0), (-1.5, 0.25, 4.0, -2.0)]
 B = [(-7.0, 0.5, 11.0, 1.0), (2.0, -3.0, 0.75, 8.0)]
 
