@@ -137,10 +137,10 @@ class _Gathering:
         return left
 
     def product(self, term: Signed) -> _Product:
-        """A term by its factors; a constant alone has none."""
+        """A term by its factors."""
         found = Chain([], [])
         collect(self.known, term[1], term[0], False, found)
-        factors = (*found.constants, *found.others) if found.others else ()
+        factors = (*found.constants, *found.others)
         odd = sum(negative for negative, _ in factors) % 2 == 1
         parts = tuple(e for _, e in factors)
         return _Product(odd, parts, tuple(meaning(self.known, e) for e in parts))

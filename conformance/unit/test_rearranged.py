@@ -162,6 +162,21 @@ SHARED: dict[str, tuple[str, list[int], Callable[..., Any]]] = {
         [0x407A5B3F, 0xC07A5B3F],
         lambda a, b: (a + F(0.7)) + b,
     ),
+    "sign before": (
+        "0.7 - clamp(b, -1.0, -1.0) * (a + b)",
+        [0x407A5B3F, 0xC07A5B3F],
+        lambda a, b: (a + F(0.7)) + b,
+    ),
+    "component": (
+        "dot(vec3(1.0, vec2(b, a) * 1.0).zy, vec3(vec2(a, b) * 0.0, 5.0).zz)",
+        [0x3F36B3A5, 0xC00BEF24],
+        lambda a, b: F(5.0) * (a + b),
+    ),
+    "beside": (
+        "max((a + b) + (c + d), -100.0) + d * d + 1.0",
+        [0xC066EDFC, 0x3FD7C6AC, 0xBFB55D36, 0x3F81D4C1],
+        lambda a, b, c, d: ((a + c) + (b + d)) + d * d + F(1.0),
+    ),
     "four": (
         "(a + b) + (c + d)",
         [0x447A0000, 0xC47A0000, 0x3DCCCCCD, 0x3E4CCCCD],
@@ -203,17 +218,40 @@ def test_multiples_of_one_value_are_gathered(tmp_path: Path) -> None:
         assert all(np.abs(a - b).max() <= SAME for a, b in zip(columns(wanted), columns(got), strict=True))
 
 
-GROWING = """def probe(x: X, y: X) -> f32:
-    s = x
-    for k in range(16):
-        s = s + s * y + x * y
-    return s
-"""
+@pytest.mark.parametrize(
+    ("sum_", "names"),
+    [
+        ("a * b * c + a * b * d", "aabbcd"),  # a local that is not used any more holds a * b
+        ("a * b + c * d + (a * c + d * b)", "abbccd"),
+        ("a * b - c * d + (a * 3.0 - c * 0.7)", "abcd"),
+        ("a * d + b * d + a", "aabd"),
+        ("a * d + a * (b + c)", "abcd"),
+    ],
+)
+def test_factors_are_taken_out_of_one_another(sum_: str, names: str, tmp_path: Path) -> None:
+    """One of the forms has just these variables."""
+    library = library_of(tmp_path, f"def probe(a: X, b: X, c: X, d: X) -> f32:\n    return {sum_}\n")
+    found = [
+        "".join(sorted(e.name for e in ir.expressions(form.body) if isinstance(e, ir.Var)))
+        for form in gathered(straightened(library, "probe").function)
+    ]
+    assert names in found
 
 
-def test_sums_through_long_loops_are_looked_at_in_time(tmp_path: Path) -> None:
-    """Written out, the sum has 2^16 terms."""
-    library = library_of(tmp_path, GROWING)
+def test_components_are_known_through_swizzles(tmp_path: Path) -> None:
+    """z x + x y is x (z + y)."""
+    library = library_of(tmp_path, "def probe(v: V) -> f32:\n    return dot(v.zx, v.zxy.yz)\n")
+    made = [form for form in gathered(straightened(library, "probe").function)][-1]
+    inputs = {"v": np.array([[2.0, 3.0, 5.0]], np.float32)}
+    assert evaluate(library.with_functions([made]), "probe", inputs) == 2.0 * (5.0 + 3.0)
+    assert sum(isinstance(e, ir.Var) for e in ir.expressions(made.body)) == len("xyz")
+
+
+@pytest.mark.parametrize("more", ["s * y + x * y", "s * y + s + s"])
+def test_sums_through_long_loops_are_looked_at_in_time(more: str, tmp_path: Path) -> None:
+    """Written out, one has 3^16 terms, the other products with sums of hundreds."""
+    source = f"def probe(x: X, y: X) -> f32:\n    s = x\n    for k in range(16):\n        s = s + {more}\n"
+    library = library_of(tmp_path, f"{source}    return s\n")
     inputs = {"x": np.array([1.0], np.float32), "y": np.array([0.5], np.float32)}
     got = np.asarray(evaluate(library, "probe", inputs))
     assert explained(library, "probe", inputs, "glsl", got).all()
