@@ -8,7 +8,9 @@ Plan.
   devices     functions made of exact operations only give the evaluator's bits on every target
 """
 
+import pickle
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,8 @@ import pytest
 from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.execute import Runtime, execute
+from codegen.ir import nodes as ir
+from codegen.ir.types import F32
 from codegen.library import Library
 from conformance.unit.support.sources import library_of
 
@@ -170,6 +174,15 @@ def test_mpmath_keeps_digits_that_double_loses(tmp_path: Path) -> None:
         (got,) = evaluate(library, "probe", {"x": np.float32(1e-30)}, "mpmath")
         assert got == mpmath.mpf(float(np.float32(1e-30)))
     assert evaluate(library, "probe", {"x": np.float32(1e-30)}, "float64") == 0.0
+
+
+def test_types_that_are_equal_are_one(tmp_path: Path) -> None:
+    """Functions travel between processes, where a type arrives as another object."""
+    probe = library_of(tmp_path, "def probe(x: X, y: X) -> f32:\n    return x + y\n").function("probe")
+    added = ir.Binary(F32, "+", pickle.loads(pickle.dumps(ir.Var(F32, "x"))), ir.Var(F32, "y"))
+    library = library_of(tmp_path, "").with_functions([replace(probe, body=(ir.Return(added),))])
+    found: Any = evaluate(library, "probe", {"x": [1.0, 2.0], "y": [4.0, 8.0]})
+    assert found.tolist() == [5.0, 10.0]
 
 
 QUIET = {

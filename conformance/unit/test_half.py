@@ -186,6 +186,18 @@ def test_kept_vectors_are_computed_in_single_precision_and_rounded_once(tmp_path
     assert np.array_equal(got, (a * a).astype(np.float16) * np.float16(3.0))
 
 
+def test_only_halves_are_flushed(tmp_path: Path) -> None:
+    """What is kept in single precision may be smaller, and becomes a denormal half at the end."""
+    library = library_of(tmp_path, 'def f(a: X, b: X) -> f32:\n    """F."""\n    return a * a * b\n')
+    inputs = {"a": [2.0**-10, 2.0**-10], "b": [2.0**10, 1.0]}
+    rules = HalfRules({}, {"f": frozenset("ab")})
+    kept, strict = (
+        np.asarray(evaluate(library, "f", inputs, a, rules=rules)) for a in ("float16", "float16-strict")
+    )
+    assert kept.tolist() == [2.0**-10, 2.0**-20]
+    assert strict.tolist() == [2.0**-10, 0.0]
+
+
 @pytest.mark.parametrize("base", DIALECTS, ids=dialect_id)
 def test_compilers_accept_the_half_library(base: Dialect) -> None:
     text = emit(load_library(), with_half(base))
