@@ -36,6 +36,8 @@ MOST_SQUARED = 80.001**2
 AZIMUTHS = ("fur_geometry", *(f"strand_azimuth_cosine{form}" for form in ("", "_cross", "_dots")))
 """Functions that give the cosine of the azimuth of the light about a hair."""
 LARGEST_VARIANCE = 999.0
+LIMIT = 1e-6
+"""Relative error of a density at a limit that its source states; 2e-7 measured."""
 
 UNIT = (
     "ashikhmin_shirley_sample",
@@ -57,7 +59,7 @@ UNIT = (
 )
 """Functions whose results are unit vectors."""
 
-HEIGHTS = (0.0, 1e-42, 1e-36, 1e-30, 1e-24, 1e-18, 1e-12, 1e-8, 1e-4)
+HEIGHTS = (0.0, 1.5e-45, 1e-42, 1e-36, 1e-30, 1e-24, 1e-18, 1e-12, 1e-8, 1e-4)
 """Heights of light and viewer that are opposite at grazing: half vectors and cosines vanish together."""
 PARAMETERS = {
     "alpha": (1e-4, 0.03, 1.0),
@@ -111,6 +113,15 @@ def _ward_ends(library: Library, name: str) -> bool:
     return bool(beyond.any()) and not np.asarray(evaluate(library, name, inputs))[beyond].any()
 
 
+def _peaks_along_the_strand(library: Library, name: str) -> bool:
+    """The limit of the density for v = +-x and l = -v is (p + 1) / (2 pi)."""
+    exponent = np.repeat(np.array([0.0, 1.0, 10.0, 1e3, 1e5], np.float32), 2)
+    v = np.tile(np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], np.float32), (5, 1))
+    found = np.asarray(evaluate(library, name, {"l": -v, "v": v, "exponent": exponent}))
+    limit = (exponent.astype(np.float64) + 1.0) / (2.0 * np.pi)
+    return bool((np.abs(found - limit) <= LIMIT * limit).all())
+
+
 def _skin_is_left(library: Library, name: str) -> bool:
     """Some light comes through the densest coat: the least power of e that is no denormal number."""
     depths = np.array([0.0, 30.0, 60.0, 79.0, 85.0, 95.0, 110.0, 1e3, 1e18], np.float32)
@@ -152,6 +163,10 @@ def _hammersley(library: Library, name: str) -> bool:
     n = np.exp2(rng.uniform(0.0, 20.0, COUNT)).astype(np.uint32)
     i = (rng.random(COUNT) * n).astype(np.uint32)
     i[::4] = n[::4] - 1
+    # Quotients that miss a whole number by 1 / n: i 2^24 is one less than a multiple of n.
+    for k in range(1, COUNT, 8):
+        n[k] = rng.integers(2**17, 2**19) * 2 + 1
+        i[k] = (int(n[k]) - 1) * pow(2**24, -1, int(n[k])) % int(n[k])
     wanted = (i.astype(np.uint64) << np.uint64(24)) // n
     for factor in (1.0 - LAST_BITS, 1.0, 1.0 + LAST_BITS):
         found = np.asarray(evaluate(rounded(library, name, factor), name, {"i": i, "n": n}))
@@ -203,13 +218,15 @@ def _azimuth_is_a_cosine(library: Library, name: str) -> bool:
 def _shell_pattern(library: Library, name: str) -> bool:
     """The pattern of hairs is that of its source's whole numbers, also below 0 and between their steps."""
     rng = np.random.default_rng(SEED)
-    far, near = rng.uniform(-1024.0, 1024.0, (COUNT, 2)), rng.uniform(-4.0, 0.0, (COUNT, 2))
+    each = 20 * COUNT
+    far, near = rng.uniform(-1024.0, 1024.0, (each, 2)), rng.uniform(-4.0, 0.0, (each, 2))
+    density = np.concatenate([np.exp2(rng.uniform(0.0, 12.0, each)), rng.uniform(2e3, 4e3, each)])
     inputs = {
         "uv": np.concatenate([far, near]).astype(np.float32),
-        "height": rng.uniform(0.0, 1.0, 2 * COUNT).astype(np.float32),
-        "density": np.exp2(rng.uniform(0.0, 12.0, 2 * COUNT)).astype(np.float32),
-        "thickness": rng.uniform(0.3, 1.0, 2 * COUNT).astype(np.float32),
-        "seed": rng.integers(0, 2**32, 2 * COUNT).astype(np.uint32),
+        "height": rng.uniform(0.0, 1.0, 2 * each).astype(np.float32),
+        "density": density.astype(np.float32),
+        "thickness": rng.uniform(0.3, 1.0, 2 * each).astype(np.float32),
+        "seed": rng.integers(0, 2**32, 2 * each).astype(np.uint32),
     }
     return np.array_equal(np.asarray(evaluate(library, name, inputs)), shell_pattern(**inputs))
 
@@ -269,6 +286,12 @@ def takes_exponentials(name: str) -> bool:
 
 
 COUNT_AS: Mapping[str, tuple[tuple[dict[str, Any], dict[str, Any]], ...]] = {
+    "shell_strand_mask": (
+        (
+            {"uv": (0.5, 0.5), "height": 0.0, "density": 0.25, "thickness": 1.0, "seed": 7},
+            {"uv": (0.5, 0.5), "height": 0.0, "density": 1.0, "thickness": 1.0, "seed": 7},
+        ),
+    ),
     "angle_share": (({"c": 1.0000002}, {"c": 1.0}), ({"c": -1.0000002}, {"c": -1.0})),
     **{
         f"shell_alpha_resample{form}": (
@@ -290,6 +313,8 @@ PROMISES: Mapping[str, tuple[Promise, ...]] = {
     **{name: (_azimuth_is_a_cosine,) for name in AZIMUTHS},
     "ward_value": (_is_finite, _ward_ends),
     "ward_pdf": (_is_finite, _ward_ends),
+    "poulin_fournier_value_eight": (_is_finite,),
+    "strand_pdf": (_is_finite, _peaks_along_the_strand),
     "fur_weights_goldman": (_skin_is_left,),
     "fur_weights_slab": (_skin_is_left,),
     "fur_average": (_average_ends,),
@@ -298,7 +323,7 @@ PROMISES: Mapping[str, tuple[Promise, ...]] = {
     "hammersley": (_hammersley,),
     "cranley_patterson": (_stays_below_one,),
     "shell_height": (_shell_height,),
-    "shell_strand_mask": (_shell_pattern,),
+    "shell_strand_mask": (_counts_as, _shell_pattern),
 }
 """Function -> what it promises."""
 

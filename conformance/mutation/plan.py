@@ -1,4 +1,5 @@
-"""The plan of plan.toml, the planted faults of planted.toml and the equivalent mutants of equivalent.toml."""
+"""The plan of plan.toml, the planted faults of planted.toml and the equivalent mutants of
+equivalent.toml and equivalent_shaders.toml."""
 
 from __future__ import annotations
 
@@ -155,13 +156,16 @@ class Excuse:
 
 @cache
 def excuses() -> tuple[Excuse, ...]:
-    """The entries of equivalent.toml."""
-    data = read("equivalent.toml")
+    """The entries of equivalent.toml and equivalent_shaders.toml."""
+    files = [read(name) for name in ("equivalent.toml", "equivalent_shaders.toml")]
     named = [
         Excuse(e["reason"], (e["path"], e["place"], e["before"], e["after"]), None)
+        for data in files
         for e in data.get("mutant", ())
     ]
-    matching = [Excuse(e["reason"], None, re.compile(e["matches"])) for e in data.get("pattern", ())]
+    matching = [
+        Excuse(e["reason"], None, re.compile(e["matches"])) for data in files for e in data.get("pattern", ())
+    ]
     return (*named, *matching)
 
 
