@@ -4,7 +4,7 @@ Plan.
   shares     of the sample in plan.toml, each group's share is killed (python -m conformance.mutation: all)
   planted    every planted fault still fits its file, and the oracle's are all killed
   machinery  a mutant is one change; a harmless change survives, a deadly one is killed, an endless one too
-  excuses    every entry of equivalent.toml excuses some mutant
+  excuses    every entry of equivalent.toml excuses some mutant; those of shading functions change no result
   symmetric  functions whose arguments are not exchanged give the same either way
 The trials run in a fresh process: forks of a process that has opened drivers would inherit their threads.
 """
@@ -22,13 +22,25 @@ from typing import Any
 import numpy as np
 import pytest
 
+from codegen.errors import SourceError, UserError
 from codegen.evaluate import evaluate
+from codegen.ir.verify import MalformedIRError
 from codegen.library import load_library
 from conformance.check.draws import draw
 from conformance.mutation import python_rules, shader_rules
-from conformance.mutation.plan import PLANTED, excuses, groups, mutants_of, planted, tree_of
+from conformance.mutation.plan import (
+    PLANTED,
+    Group,
+    Subject,
+    excuse,
+    excuses,
+    groups,
+    mutants_of,
+    planted,
+    tree_of,
+)
 from conformance.mutation.report import confidence
-from conformance.mutation.shaders import names_in
+from conformance.mutation.shaders import names_in, points, public_users, with_source
 from conformance.mutation.sites import Mutant, mutants, mutated
 
 ROOT = Path(__file__).parents[2]
@@ -235,3 +247,47 @@ def test_every_excuse_excuses_something() -> None:
     assert not idle
     assert all(e.reason for e in excuses())
     assert not [m for m in every if m.index == PLANTED and any(e.covers(m) for e in excuses())]
+
+
+DRAWN, OF_A_FAMILY = 2000, 300
+NOTICEABLE = 2e-6
+"""Relative to a result, or to 1 where that is more: some roundings of float32, 2^-24 each."""
+
+
+def _changes(group: Group, subject: Subject, mutant: Mutant) -> float:
+    """How far the results of the nearest function with numbers as arguments are from the original's.
+
+    0 for a change that the front end refuses, and where no such function is near.
+    """
+    original = load_library()
+    try:
+        library = with_source(subject.path, tree_of(group, subject, mutant))
+        users = [u for name in names_in(mutant, subject) for u in public_users(name, 50)]
+        near = next((u for u in users if not original.function(u).reads_textures), None)
+        if near is None:
+            return 0.0
+        library.function(near)
+    except (SourceError, UserError, MalformedIRError):
+        return 0.0
+    worst = 0.0
+    for d in points(near, DRAWN, OF_A_FAMILY):
+        with np.errstate(all="ignore"):
+            one, other = (_flat(evaluate(of, near, d.inputs)) for of in (original, library))
+        same = (one == other) | (np.isnan(one) & np.isnan(other))
+        off = np.where(same, 0.0, np.abs(one - other) / np.maximum(np.abs(one), 1.0))
+        worst = max(worst, float(np.nan_to_num(off, nan=np.inf).max()))
+    return worst
+
+
+def _flat(value: Any) -> Any:
+    parts = value.values() if isinstance(value, dict) else (value,)
+    return np.concatenate([np.ravel(np.asarray(part, np.float64)) for part in parts])
+
+
+@pytest.mark.nightly  # a minute of processor time
+def test_excused_shaders_change_nothing() -> None:
+    group = groups()["library"]
+    excused = [(s, m) for s in group.subjects for m in mutants_of(group, s) if excuse(m)]
+    assert len(excused) > 100
+    changed = {str(m): change for s, m in excused if (change := _changes(group, s, m)) > NOTICEABLE}
+    assert not changed, "\n".join(f"{m}: {change:.1e}" for m, change in changed.items())
