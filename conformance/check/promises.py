@@ -37,7 +37,9 @@ AZIMUTHS = ("fur_geometry", *(f"strand_azimuth_cosine{form}" for form in ("", "_
 """Functions that give the cosine of the azimuth of the light about a hair."""
 LARGEST_VARIANCE = 999.0
 LIMIT = 1e-6
-"""Relative error of a density at a limit that its source states; 2e-7 measured."""
+"""Error at a limit that a source states, of a density relative to it; 2e-7 measured."""
+FAINT = 1e-3
+"""A highlight that is none: polynomials leave 2e-4 of it."""
 
 UNIT = (
     "ashikhmin_shirley_sample",
@@ -137,6 +139,23 @@ def _powers_are_left(library: Library, name: str) -> bool:
     inputs = draw(load_library().function(name), "uniform", COUNT, SEED).inputs
     found = np.asarray(evaluate(library, name, {**inputs, "p": np.full(COUNT, 1e5, np.float32)}))
     return bool(found.any()) and bool(((found == 0.0) | (found >= LEAST)).all())
+
+
+def _half_vector_decides(library: Library, name: str) -> bool:
+    """For l = -v, half_vector's direction is that of the highlight: a strand along it has none.
+
+    Shown by level directions, whose frames are not those of their opposites.
+    """
+    turns = np.linspace(0.1, 6.1, 50)
+    l = np.stack([np.cos(turns), np.sin(turns), np.zeros(len(turns))], axis=-1).astype(np.float32)
+    along = np.asarray(evaluate(load_library(), "half_vector", {"l": l, "v": -l}))
+    one, none = np.ones((len(l), 3), np.float32), np.zeros(len(l), np.float32)
+    sharp = np.full(len(l), 16.0, np.float32)
+    given = {"t": along, "n": l, "l": l, "v": -l, "base": one, "primary": one, "secondary": one}
+    given |= {f"{which}_exponent": sharp for which in ("primary", "secondary")}
+    given |= {f"{which}_shift": none for which in ("primary", "secondary")}
+    found = np.asarray(evaluate(library, name, {**given, "mask": none}))
+    return bool((np.abs(found - 1.0) <= FAINT).all())
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -317,6 +336,7 @@ PROMISES: Mapping[str, tuple[Promise, ...]] = {
     "strand_pdf": (_is_finite, _peaks_along_the_strand),
     "fur_weights_goldman": (_skin_is_left,),
     "fur_weights_slab": (_skin_is_left,),
+    **{f"scheuermann_shade{form}": (_half_vector_decides,) for form in ("", "_from4", "_from8", "_cubic8")},
     "fur_average": (_average_ends,),
     "pow_one_minus": (_powers_are_left,),
     "shell_sine_power": (_powers_are_left,),

@@ -54,6 +54,13 @@ def test_a_lobe_that_goes_on_breaks_a_promise() -> None:
     assert not keeps(rewritten(LIBRARY, "ward_pdf", limitless), "ward_pdf")
 
 
+def test_a_half_vector_the_other_way_round_breaks_a_promise() -> None:
+    def exchanged(node: ast.Call | ast.BinOp) -> ast.expr:
+        return ast.parse("half_vector(v, l)", mode="eval").body if is_call(node, "half_vector") else node
+
+    assert not keeps(rewritten(LIBRARY, "scheuermann_shade", exchanged), "scheuermann_shade")
+
+
 def test_a_top_that_is_a_quotient_breaks_a_promise() -> None:
     """The height of the outermost shell is decided on whole numbers: not where the fault cuts no quotient."""
 
