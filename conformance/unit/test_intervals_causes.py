@@ -2,19 +2,30 @@
 
 Plan. Hand-made values, and functions of one line.
   told      operand and reason of what may give anything; the first operand's cause comes first
-  infinite  what may be anything has infinite ends, also through normalised vectors, and decides no comparison
+  infinite  what may be anything has infinite ends, also through normalised vectors; it decides no comparison
+            and is no fork
   choices   bring the cause of the side that may be chosen
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from codegen.intervals import TABLES, arithmetic, elementary, load_table, logic, operations, permitted
+from codegen.intervals import (
+    TABLES,
+    arithmetic,
+    compiled,
+    elementary,
+    load_table,
+    logic,
+    operations,
+    permitted,
+)
 from codegen.intervals.causes import Cause, CauseBook
 from codegen.intervals.context import Context
 from codegen.intervals.values import Range, Truth, Whole, choose
@@ -132,3 +143,47 @@ def test_chosen_side_brings_its_cause() -> None:
         found = choose(condition, a, b)
         assert isinstance(found, Range) and found.cause is not None
         assert found.cause.tolist() == codes
+
+
+@pytest.mark.parametrize(
+    ("table", "text", "told"),
+    [
+        ("wgsl", "dot(vec2(1.0 / x, sqrt(y)), vec2(1.0, 1.0))", "the divisor may be 0"),
+        ("wgsl", "dot(vec2(sqrt(y), 1.0 / x), vec2(1.0, 1.0))", "x may be negative"),
+        ("vulkan", "normalize(vec2(1.0 / x, sqrt(y))).x", "the divisor may be 0"),
+        ("vulkan", "normalize(vec2(1.0 / x, sqrt(y))).y", "x may be negative"),
+    ],
+)
+def test_cause_of_the_first_term_and_of_the_component_is_told(
+    table: str, text: str, told: str, tmp_path: Path
+) -> None:
+    library = library_of(tmp_path, f"def probe(x: X, y: X) -> f32:\n    return {text}\n")
+    inputs = {"x": np.array([0.0], np.float32), "y": np.array([-1.0], np.float32)}
+    assert permitted(library, "probe", inputs, table).cause(0).endswith(told)
+
+
+def test_share_of_a_length_may_be_anything_where_the_quotient_may(tmp_path: Path) -> None:
+    """A component too small for the quotients of a table, beside one that is not."""
+    text = "def probe(x: X) -> f32:\n    return normalize(vec2(x, 1.0)).x\n"
+    table = load_table("wgsl")
+    quotient = replace(table.row("/"), magnitude={"x": (-62, 62)})
+    of_few = replace(table, rows={**table.rows, "/": quotient})
+    x = np.array([2.0**-70, 0.5], np.float32)
+    found: Any = permitted(library_of(tmp_path, text), "probe", {"x": x}, of_few)
+    assert found.guaranteed.tolist() == [False, True]
+    assert (found.low[0], found.high[0]) == (-INF, INF)
+
+
+@pytest.mark.parametrize("nan_first", [True, False])
+def test_what_may_be_anything_is_no_fork(nan_first: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also beside what a compiled choice leaves of NaN, which may be the other side alone."""
+    monkeypatch.setattr(compiled, "FEWEST", 2)
+    here = Context(load_table("wgsl"), CauseBook(), 2)
+    nan = arithmetic.from_input(here, np.array([np.nan, 1.0], np.float32))
+    some = Range(*ends((2.25, 5.5), (2.25, 5.5)))
+    both = Truth(np.ones(2, np.bool_), np.ones(2, np.bool_))
+    chosen = choose(both, nan, some) if nan_first else choose(both, some, nan)
+    assert isinstance(chosen, Range)
+    found = logic.floor(here, chosen)
+    assert found.cause is not None and (found.cause > 0).tolist() == [True, False]
+    assert here.first_fork.tolist() == [-1, 0]

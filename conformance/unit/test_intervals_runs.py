@@ -11,6 +11,7 @@ of the evaluator; then functions of a sum that lies between two floats, where th
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -273,6 +274,46 @@ def test_lanes_do_not_depend_on_each_other(
                 a[0], c[-1 - k], equal_nan=True
             )
         assert one.cause(0) == every.cause(k) == back.cause(len(x) - 1 - k)
+
+
+def test_other_ways_leave_a_known_number_known(tmp_path: Path) -> None:
+    """What differs from a number says nothing of it: as another type it has the same bits as before."""
+    text = """def probe(x: X, n: Annotated[i32, Finite()]) -> f32:
+    i = i32(x - 1.0)
+    r = 0.0
+    if i != n:
+        r = f32(u32(n) >> 8)
+        if i > n:
+            r += 1.0
+    return r
+"""
+    n = -(2**30) - 64  # x - 1 lies between floats 128 apart, too far for a way of each integer
+    inputs = {"x": np.full(2, -(2.0**30), np.float32), "n": np.full(2, n, np.int32)}
+    found: Any = permitted(library_of(tmp_path, text), "probe", inputs, "wgsl")
+    assert found.low.tolist() == [0.0, 0.0]
+    assert found.high.tolist() == [((n + 2**32) >> 8) + 1.0] * 2
+
+
+def test_sources_are_read_before_threads_are_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also what only an added function calls: two threads that read one function find a recursion."""
+    library = library_of(tmp_path, "def called(x: X) -> f32:\n    return x + 1.0\n")
+    made = library_of(
+        tmp_path / "made",
+        "def called(x: X) -> f32:\n    return x\n\n\ndef probe(x: X) -> f32:\n    return called(x)\n",
+    ).function("probe")
+    read_in = []
+    lower = library.resolver._lower
+
+    def noted(*args: Any) -> Any:
+        read_in.append(threading.current_thread())
+        return lower(*args)
+
+    monkeypatch.setattr(library.resolver, "_lower", noted)
+    monkeypatch.setattr(permit, "CHUNK", 1)
+    monkeypatch.setenv("VAIR_INTERVAL_THREADS", "2")
+    found: Any = permitted(library.with_functions([made]), "probe", {"x": np.ones(4, np.float32)}, "wgsl")
+    assert found.low.tolist() == [2.0] * 4
+    assert read_in == [threading.main_thread()]
 
 
 FORKS_BETWEEN = {
