@@ -3,6 +3,8 @@
 Plan.
   conversions  floats become whole numbers by cutting off, up to the ends of both types, in every arithmetic;
                those beyond the ends of u32 and of halves give what IEEE 754 and two's complement say
+  ends         whole numbers go in up to the ends of their types
+  repeated     a single value stands for all lanes
   shapes       a scalar of a wrong shape gets one sentence, as a vector does
   multiprecision  inputs are exact there, and so is what follows
 """
