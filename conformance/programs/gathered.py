@@ -37,6 +37,12 @@ def gathered(function: ir.Function) -> Iterator[ir.Function]:
         gathering.number += 1
 
 
+def reordered(function: ir.Function) -> ir.Function:
+    """Any function with its sums in any order, expression by expression: also where all are constants."""
+    body, _ = scalars(function)
+    return replace(function, body=ir.map_wholes(body, _Gathering({}).changed))
+
+
 @dataclass(frozen=True)
 class _Product:
     """A term of a sum: its sign, and its factors beside what each stands for."""

@@ -24,7 +24,7 @@ from codegen.ir import nodes as ir
 from codegen.ir.types import Vector
 from codegen.library import Library
 from conformance.programs.chains import chained, straightened
-from conformance.programs.gathered import gathered
+from conformance.programs.gathered import gathered, reordered
 from conformance.programs.interpolated import interpolated
 
 REARRANGING = frozenset({"glsl", "glsl_es", "vulkan", "wgsl", "opencl_relaxed"})
@@ -59,11 +59,14 @@ def _forms(
     selected = library.select([name]).functions
     for change in (_moved(_inwards), _moved(_outwards), interpolated):
         yield library.with_functions(map(change, selected)), inputs
+    in_any_order = table.row("dot").accuracy == ANY_ORDER
+    if in_any_order:
+        yield library.with_functions(map(reordered, selected)), inputs
     straight = straightened(library, name)
     arguments = straight.arguments(inputs) if straight.parameters else {}
     for first in (False, True):
         yield library.with_functions([chained(straight.function, first)]), arguments
-    if table.row("dot").accuracy == ANY_ORDER:
+    if in_any_order:
         for made in gathered(straight.function):
             yield library.with_functions([made]), arguments
 

@@ -13,13 +13,14 @@ import numpy as np
 import pytest
 
 from codegen.evaluate import evaluate
+from codegen.evaluate.arrays import Value
 from codegen.intervals import permitted
 from codegen.ir import nodes as ir
 from conformance.fuzz.case import draw_inputs, make_case
 from conformance.fuzz.source import write
 from conformance.metamorphic.pairs import columns
 from conformance.programs.chains import chained, straightened
-from conformance.programs.gathered import gathered
+from conformance.programs.gathered import gathered, reordered
 from conformance.programs.interpolated import interpolated
 from conformance.programs.rearranged import explained
 from conformance.unit.support.sources import library_of
@@ -309,6 +310,29 @@ FORMS: dict[str, Callable[[ir.Function], Iterable[ir.Function]]] = {
 }
 
 
+CONSTANT = """@helper
+def beside(x: X, y: X) -> f32:
+    for k in range(2):
+        return x - (y - y)
+    return y
+
+def probe(z: X) -> f32:
+    return beside(0.1, 2.2)
+"""
+
+
+def test_a_sum_of_constants_in_another_order_is_explained(tmp_path: Path) -> None:
+    """Whoever inlines first and folds last sees no number in it that varies."""
+    library = library_of(tmp_path, CONSTANT)
+    inputs = {"z": np.zeros(1, np.float32)}
+    got = np.float32(0.1) - np.float32(2.2) + np.full(1, np.float32(2.2))
+    assert not permitted(library, "probe", inputs, "wgsl").contains(got).any(), "this needs no explanation"
+    assert explained(library, "probe", inputs, "wgsl", got).all()
+    assert not explained(library, "probe", inputs, "opencl", got).any()
+    beyond = np.full(1, np.float32(0.1)) - 16 * np.spacing(np.float32(2.2))
+    assert not explained(library, "probe", inputs, "wgsl", beyond).any()
+
+
 @pytest.mark.parametrize("form", FORMS)
 def test_forms_mean_what_they_were_made_of(form: str, tmp_path: Path) -> None:
     cases = [make_case(5, number) for number in range(24)]
@@ -321,8 +345,29 @@ def test_forms_mean_what_they_were_made_of(form: str, tmp_path: Path) -> None:
         for made in FORMS[form](straight.function):
             changed += made.body != straight.function.body
             got = evaluate(library.with_functions([made]), case.entry, straight.arguments(inputs), "float64")
-            for a, b in zip(columns(wanted), columns(got), strict=True):
-                near = np.abs(a.astype(np.float64) - b) <= SAME * (1.0 + np.abs(a.astype(np.float64)))
-                # Where a comparison or a conversion turns on the last bit, a few lanes may go the other way.
-                assert near.mean() > 0.9, case.text
+            assert mostly_near(wanted, got), case.text
+    assert changed > 3
+
+
+def mostly_near(wanted: Value, got: Value) -> bool:
+    """Where a comparison or a conversion turns on the last bit, a few lanes may go the other way."""
+    for a, b in zip(columns(wanted), columns(got), strict=True):
+        near = np.abs(a.astype(np.float64) - b) <= SAME * (1.0 + np.abs(a.astype(np.float64)))
+        if near.mean() <= 0.9:
+            return False
+    return True
+
+
+def test_reordered_programs_mean_what_they_were_made_of(tmp_path: Path) -> None:
+    cases = [make_case(5, number) for number in range(48)]
+    library = write(tmp_path, cases)
+    changed = 0
+    for case in cases:
+        functions = library.select([case.entry]).functions
+        made = [reordered(function) for function in functions]
+        changed += any(a.body != b.body for a, b in zip(made, functions, strict=True))
+        inputs = draw_inputs(case, library.function(case.entry).parameters, 32)
+        wanted = evaluate(library, case.entry, inputs, "float64")
+        got = evaluate(library.with_functions(made), case.entry, inputs, "float64")
+        assert mostly_near(wanted, got), case.text
     assert changed > 3
