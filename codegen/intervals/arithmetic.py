@@ -78,14 +78,11 @@ def from_input(context: Context, given: Array) -> Range:
     a = given.astype(np.float64)
     if numbers.usual(found := numbers.reach(a, a)):
         return Range(a, a, None, None, found)
+    low, high, codes = a, a, _not_finite(context, a)
     small = (np.abs(a) < SMALLEST) & (a != 0.0)
     if context.table.flush and small.any():
-        return Range(
-            np.where(small, np.minimum(a, 0.0), a),
-            np.where(small, np.maximum(a, 0.0), a),
-            _not_finite(context, a),
-        )
-    return Range(a, a, _not_finite(context, a))
+        low, high = np.where(small, np.minimum(a, 0.0), a), np.where(small, np.maximum(a, 0.0), a)
+    return Range(low, high) if codes is None else anything(low, high, codes)
 
 
 def checked(context: Context, found: bulk.Found, codes: Codes) -> Range:

@@ -1,8 +1,8 @@
 """Interval values: floats, whole numbers and truth values over arrays of lanes.
 
-Arrays have shape (N,), or (1,) for a value that all lanes share. A vector is a tuple of scalars and a struct
-a dict, so that each scalar keeps its identity: an operation on one and the same value twice (x * x, x - x) is
-seen as such.
+Arrays have shape (N,), or (1,) for a value that all lanes share; both ends have the same. A vector is a tuple
+of scalars and a struct a dict, so that each scalar keeps its identity: an operation on one and the same value
+twice (x * x, x - x) is seen as such.
 """
 
 from __future__ import annotations
@@ -50,8 +50,9 @@ class Range:
         return self.known
 
     def cut(self, low: Array, high: Array) -> None:
-        """Narrow it in place, for all who hold it."""
-        self.low, self.high, self.known = low, high, None
+        """Narrow it in place, for all who hold it; one end may be of each lane and the other shared."""
+        self.low, self.high = _alike(low, high)
+        self.known = None
 
 
 @dataclass(eq=False, slots=True, weakref_slot=True)
@@ -69,13 +70,21 @@ class Whole:
         return self.low is self.high
 
     def cut(self, low: Array, high: Array) -> None:
-        """Narrow it in place, for all who hold it."""
-        self.low, self.high = low, high
+        """Narrow it in place, for all who hold it; one end may be of each lane and the other shared."""
+        self.low, self.high = _alike(low, high)
 
     @property
     def limits(self) -> tuple[int, int]:
         """The smallest and the largest integer of the type."""
         return (-(2**31), 2**31 - 1) if self.is_signed else (0, 2**32 - 1)
+
+
+def _alike(low: Array, high: Array) -> tuple[Array, Array]:
+    """Both ends of one shape, as whoever computes with them takes them to be."""
+    if len(low) == len(high):
+        return low, high
+    low, high = np.broadcast_arrays(low, high)
+    return np.ascontiguousarray(low), np.ascontiguousarray(high)
 
 
 @dataclass(eq=False, slots=True)

@@ -34,6 +34,16 @@ PROGRAM = """def probe(a: X, b: X, c: X) -> vec4:
     more = quotient + dot(wide, vec3(a, b, c)) - dot(vec3(a, 0.5, c), vec3(b, 0.25, 1.0))
     return vec4(more, root * length(wide), power + sin(turned), normalize(wide).y)
 """
+NARROWED = """def probe(x: X, y: X, z: X) -> f32:
+    t = exp(1.0)
+    r = y
+    if {comparison}:
+        r = 1.0
+    q = z * t
+    if t > {shared!r}:
+        r = r + q
+    return r
+"""
 FUNCTIONS = ("sin_angle", "fakefur_shade_printed", "ggx_sample", "hammersley", "safe_pow")
 
 
@@ -105,3 +115,24 @@ def test_numbers_beside_powers_of_two() -> None:
             look = compiled.kernels().within_ulp(low_end, high_end, ulps, ulps, first, last)
             assert not look
             assert np.array_equal(first, plain[0]) and np.array_equal(last, plain[1])
+
+
+@pytest.mark.parametrize("comparison", ["x > t", "x < t"])
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("table", ["wgsl", "opencl"])
+def test_shared_value_that_a_way_narrows(
+    comparison: str, side: int, table: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A value that all lanes share becomes one of each lane, at either end, once a lane's way narrows it."""
+    pytest.importorskip("numba")
+    shared = np.float32(np.exp(1.0))
+    library = library_of(tmp_path, NARROWED.format(comparison=comparison, shared=float(shared)))
+    rng = np.random.default_rng(SEED)
+    steps = side * rng.integers(1, 12, LANES) * np.spacing(shared)
+    inputs = {"x": (shared + steps).astype(np.float32)}
+    inputs |= {name: rng.uniform(1.0, 2.0, LANES).astype(np.float32) for name in "yz"}
+    loops, plain = both(monkeypatch, library, "probe", inputs, table)
+    low, high = plain.low, plain.high
+    assert isinstance(low, np.ndarray) and isinstance(high, np.ndarray)
+    assert (high - low > 1.0).any(), "some lanes go either way"
+    assert_equal(loops, plain)
