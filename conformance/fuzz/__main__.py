@@ -5,6 +5,7 @@ python -m conformance.fuzz --seed 1 --case 17     that program alone, with its r
 python -m conformance.fuzz --count 100000 --workers 2
                                                   as many as that, on processes that may die
 python -m conformance.fuzz --record --count 5000  programs that follow those in results.json, kept there
+python -m conformance.fuzz --again                the findings in results.json; notes which are mended
 python -m conformance.fuzz --refusals             damaged sources instead
 """
 
@@ -36,8 +37,12 @@ from targets import TARGETS, Runtime, TargetUnavailable, open_runtime
 @click.option(
     "--record", "keep", is_flag=True, help="Go on after what results.json holds, and keep it there."
 )
+@click.option("--again", is_flag=True, help="Run the findings of results.json again, and note the mended.")
 @click.option(
-    "--results", type=click.Path(path_type=Path), default=record.RESULTS, help="With --record: the file."
+    "--results",
+    type=click.Path(path_type=Path),
+    default=record.RESULTS,
+    help="With --record and --again: the file.",
 )
 @click.option("--workers", default=1, show_default=True, help="Processes of this machine.")
 @click.option("--scheduler", help="Use the workers of a Dask scheduler: tcp://host:8786.")
@@ -49,6 +54,7 @@ def main(
     names: tuple[str, ...],
     refusals: bool,
     keep: bool,
+    again: bool,
     results: Path,
     workers: int,
     scheduler: str | None,
@@ -56,6 +62,12 @@ def main(
     """Make random programs, run them on every target, judge the results by interval."""
     if keep and (refusals or first or number is not None):
         raise click.UsageError("--record goes on by itself: it takes no --case, --first or --refusals")
+    if again and (keep or refusals or first or number is not None):
+        raise click.UsageError(
+            "--again runs what was recorded: it takes no --case, --first, --record or --refusals"
+        )
+    if again:
+        sys.exit(run_again(results))
     numbers = range(first, first + count) if number is None else range(number, number + 1)
     started = time.monotonic()
     if refusals:
@@ -83,6 +95,29 @@ def main(
     print("\n".join(tally.lines()))
     print(f"{time.monotonic() - started:.0f} s")
     sys.exit(bool(tally.findings))
+
+
+def run_again(results: Path) -> bool:
+    """Run the findings of a file once more; keep there what is mended. Whether any finding is left."""
+    opened: dict[str, Runtime] = {}
+
+    def run(seed: int, number: int, targets: list[str]) -> Tally:
+        opened.update(
+            {r.device.target: r for r in open_targets(tuple(t for t in targets if t not in opened))}
+        )
+        if missing := [t for t in targets if t not in opened]:
+            raise click.UsageError(f"case {number} was run on {missing[0]}, which is not here")
+        tally = Tally()
+        run_cases(range(number, number + 1), seed, [opened[t] for t in targets], tally)
+        return tally
+
+    before = record.read(results)
+    after = record.checked_again(before, run)
+    record.write(after, results)
+    mended = sum(len(new["mended"]) - len(old["mended"]) for old, new in zip(before, after, strict=True))
+    left = [finding for entry in after for finding in entry["findings"]]
+    print("\n".join([*left, f"{mended} mended, {len(left)} left"]))
+    return bool(left)
 
 
 def open_targets(names: tuple[str, ...]) -> list[Runtime]:

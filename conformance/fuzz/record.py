@@ -1,7 +1,8 @@
 """Which random programs have been run, one entry per run in results.json: the record grows, run by run.
 
 Programs are known by seed and number. A further run of a seed on the same targets begins where the last one
-ended, so that no program is counted twice; `source` tells of which generator, backends and intervals.
+ended, so that no program is counted twice; `source` tells of which generator, backends and intervals. A
+finding stays until its program is run again and found right: then its number stands under `mended`.
 """
 
 from __future__ import annotations
@@ -9,8 +10,9 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
+import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -45,6 +47,7 @@ def entry(tally: Tally, seed: int, first: int, targets: Sequence[str], today: da
         "date": today.isoformat(),
         **{name: dict(sorted(getattr(tally, name).items())) for name in COUNTS},
         "findings": [str(finding) for finding in tally.findings],
+        "mended": [],
     }
 
 
@@ -75,8 +78,30 @@ def _joined(old: Entry, new: Entry) -> Entry:
         "first": old["first"],
         "programs": old["programs"] + new["programs"],
         **sums,
-        "findings": [*old["findings"], *new["findings"]],
+        **{name: [*old[name], *new[name]] for name in ("findings", "mended")},
     }
+
+
+def checked_again(entries: Iterable[Entry], run: Callable[[int, int, list[str]], Tally]) -> list[Entry]:
+    """Entries whose findings were run once more, by run(seed, number, targets); what is right is mended."""
+    found = []
+    for e in entries:
+        wrong: list[str] = []
+        mended = list(e["mended"])
+        for finding in e["findings"]:
+            number = number_of(finding)
+            left = run(e["seed"], number, e["targets"]).findings
+            wrong += map(str, left)
+            mended += [] if left else [number]
+        found.append({**e, "findings": list(dict.fromkeys(wrong)), "mended": sorted(set(mended))})
+    return found
+
+
+def number_of(finding: str) -> int:
+    """The number of the program that a finding in words is about."""
+    told = re.search(r"--case (\d+)", finding)
+    assert told is not None
+    return int(told[1])
 
 
 def write(entries: Iterable[Entry], path: Path = RESULTS) -> None:
