@@ -176,7 +176,8 @@ def test_boxes_of_vectors_hold_every_direction_in_them(name: str) -> None:
 def test_known_integer_stays_one_number_as_a_float() -> None:
     context = Context(load_table("wgsl"), CauseBook(), 2)
     known, between = np.array([3, 2**20]), np.array([4, 2**20])
-    assert logic.to_float(context, Whole(known, known, False)).is_point
+    for exact in (known, np.array([-(2**24), 0]), np.array([1, 2**24])):
+        assert logic.to_float(context, Whole(exact, exact, True)).is_point
     found = logic.to_float(context, Whole(known, between, False))
     assert pairs(found) == [(3.0, 4.0), (2.0**20, 2.0**20)] and not found.is_point
 

@@ -2,7 +2,8 @@
 
 Plan. Small functions as trees, with intervals as arguments; expected hulls listed by hand.
   elements   the hull of those that a number may name, the very value where it names one
-  limits     as many rounds as the number says at least and at most, for signed and unsigned numbers
+  limits     as many rounds as the number says at least and at most, for signed and unsigned numbers; forks
+             count as if all rounds had run
   literals   one value each, however often written; 0.0 and -0.0 are two, as are 1 of either type
   causes     name the function and line in which an operation stands, also beside a call
   ways       as many as are followed at a time, as deep as is promised, and no more
@@ -20,7 +21,7 @@ from codegen.errors import Place
 from codegen.intervals import load_table, permitted
 from codegen.intervals.causes import Cause, CauseBook
 from codegen.intervals.context import Context
-from codegen.intervals.interpreter import Frame
+from codegen.intervals.interpreter import ALWAYS, Frame
 from codegen.intervals.permit import Permitted
 from codegen.intervals.values import Range, Value, Whole, constant
 from codegen.ir import nodes as ir
@@ -85,6 +86,20 @@ def test_rounds_of_a_loop_with_a_limit(kind: Type) -> None:
     tail = [100 + sum(range(2, n)) for n in range(5)]
     assert ends(later) == [(tail[min(a, 4)], tail[min(b, 4)]) for a, b in boxes]
     assert ends(call(rounds(I32, 1, 4, False), {}, 1)) == [(106, 106)]
+
+
+@pytest.mark.parametrize(("start", "stop"), [(0, 4), (2, 5), (3, 3)])
+@pytest.mark.parametrize("before", [0, 5])
+def test_forks_of_a_loop_are_those_of_all_its_rounds(before: int, start: int, stop: int) -> None:
+    """Whatever a limit leaves of them, and however many forks came before."""
+    decided = ir.Binary(BOOL, "<", ir.Convert(F32, ir.Var(I32, "i")), const(99.0))
+    body = (ir.Let("a", decided), ir.Let("b", ir.Builtin(F32, "floor", (const(0.5),))))
+    loop = ir.For("i", start, stop, body, limit=ir.Var(I32, "n"))
+    function = ir.Function("probe", "", "base", None, (), F32, (loop,), ir.Doc("", {}), Place("", 1))
+    for n in range(7):
+        here = Context(load_table("wgsl"), CauseBook(), 1, forks=before)
+        Frame(LIBRARY, here, function, {"n": wholes(True, (n, n))}).block(function.body, ALWAYS)
+        assert here.forks == before + 2 * (stop - start)
 
 
 @pytest.mark.parametrize("kind", [I32, U32])

@@ -237,6 +237,16 @@ def test_nearer_limits(operation: str, name: str) -> None:
             assert_same(nearer, lambda here, x=x: elementary.square_root(here, x))  # type: ignore[misc]
 
 
+def test_root_of_a_table_without_limits() -> None:
+    """Each of the two rows in its place, also where a loop would take either."""
+    rng = np.random.default_rng(SEED)
+    made = load_table("wgsl")
+    boundless = replace(made, rows={**made.rows, "/": replace(made.row("/"), magnitude={})})
+    for palette, kind in itertools.product(PALETTES, KINDS):
+        x = operand(rng, kind, palette)
+        assert_same(boundless, lambda here, x=x: elementary.square_root(here, x))  # type: ignore[misc]
+
+
 def ordinary(kind: str = "interval") -> Range:
     return operand(np.random.default_rng(SEED), kind, "ordinary")
 
