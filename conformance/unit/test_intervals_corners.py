@@ -4,7 +4,7 @@ Plan. Hand-made values, and functions of one line.
   crossed ends   of a clamp: targets differ, so that both ways count
   cut            of atan2: on the negative x-axis either sign of pi
   zero           a dividend that is 0 although the promise begins above 0
-  known lanes    of an integer that is an interval elsewhere stay exact
+  known lanes    of an integer that is an interval elsewhere stay exact; rounded to one integer, all are known
   words          keep their number where both types have it; over 0 they are what WGSL says
   denormals      ends on the grid of float32 where a table flushes nothing
   bits of zero   either word, and every word where something else than a number may be
@@ -180,6 +180,15 @@ def test_known_integer_stays_one_number_as_a_float() -> None:
         assert logic.to_float(context, Whole(exact, exact, True)).is_point
     found = logic.to_float(context, Whole(known, between, False))
     assert pairs(found) == [(3.0, 4.0), (2.0**20, 2.0**20)] and not found.is_point
+
+
+@pytest.mark.parametrize("round_", [logic.floor, lambda here, x: logic.to_integer(here, x, True)])
+def test_integer_of_all_that_a_lane_may_be_is_one_number(round_: Any) -> None:
+    here = Context(load_table("wgsl"), CauseBook(), 2)
+    found = round_(here, Range(*ends((1.25, 1.75), (4.0, 4.5))))
+    assert found.is_point and pairs(found) == [(1.0, 1.0), (4.0, 4.0)]
+    assert here.forks == 1
+    assert not round_(here, Range(*ends((1.25, 1.75), (4.0, 5.0)))).is_point
 
 
 def test_operation_without_a_form_is_told() -> None:

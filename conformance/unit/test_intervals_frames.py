@@ -102,6 +102,16 @@ def test_forks_of_a_loop_are_those_of_all_its_rounds(before: int, start: int, st
         assert here.forks == before + 2 * (stop - start)
 
 
+def test_forks_of_a_loop_in_a_loop_are_those_of_all_rounds_of_both() -> None:
+    step, limit = ir.Let("b", ir.Builtin(F32, "floor", (const(0.5),))), ir.Var(I32, "n")
+    loop = ir.For("i", 0, 4, (step, ir.For("k", 0, 3, (step, step), limit=limit)), limit=limit)
+    function = ir.Function("probe", "", "base", None, (), F32, (loop,), ir.Doc("", {}), Place("", 1))
+    for n in range(5):
+        here = Context(load_table("wgsl"), CauseBook(), 1)
+        Frame(LIBRARY, here, function, {"n": wholes(True, (n, n))}).block(function.body, ALWAYS)
+        assert here.forks == 4 * (1 + 2 * 3)
+
+
 @pytest.mark.parametrize("kind", [I32, U32])
 def test_number_of_a_round_has_the_type_of_its_limit(kind: Type) -> None:
     body = (

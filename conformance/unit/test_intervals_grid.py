@@ -256,6 +256,9 @@ def test_inputs_that_are_not_finite_are_anything(others: list[float]) -> None:
     found = arithmetic.from_input(context, np.array([INF, -INF, NAN, *others], np.float32))
     assert found.cause is not None and found.cause.tolist() == [1, 1, 1] + [0] * len(others)
     assert [cause.reason for cause in context.book.causes] == ["the input is not finite"]
+    told = float(np.float32(others[0]))
+    assert found.low.tolist() == [-INF] * 3 + [told if told == 1.0 else 0.0]
+    assert found.high.tolist() == [INF] * 3 + [told]
 
 
 def test_negated_value_is_known_as_well_as_the_value() -> None:

@@ -8,12 +8,14 @@ Plan.
   integers    points are exact and wrap; intervals hold every result
   branches    early returns, loops and undecided conditions
   shortcuts   sums that float64 holds are told from those that it rounds; choosing by bits is np.where
-  chunks      several at a time give what one after another gives, causes included
+  chunks      several at a time give what one after another gives, causes included; how many at a time
   normalize   a component of a vector that no interval knows is 1 at most, with its roundings
 """
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -274,6 +276,19 @@ def test_the_environment_sets_the_number_of_threads(monkeypatch: pytest.MonkeyPa
     for told in ("1", "7"):
         monkeypatch.setenv("VAIR_INTERVAL_THREADS", told)
         assert threads() == int(told)
+
+
+@pytest.mark.parametrize(
+    ("is_worker", "processors", "expected"), [(False, 8, 2), (False, 1, 1), (False, None, 1), (True, 8, 1)]
+)
+def test_threads_that_nobody_asked_for(
+    is_worker: bool, processors: int | None, expected: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two where there are processors; a worker has its own already."""
+    monkeypatch.delenv("VAIR_INTERVAL_THREADS", raising=False)
+    monkeypatch.setattr(multiprocessing, "parent_process", lambda: object() if is_worker else None)
+    monkeypatch.setattr(os, "cpu_count", lambda: processors)
+    assert threads() == expected
 
 
 WIDE = """def probe(x: X, y: X) -> vec3:

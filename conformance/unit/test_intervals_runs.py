@@ -321,13 +321,6 @@ FORKS_BETWEEN = {
     "a known number": "y = 3.0 if z > 0.0 else x * 0.7\n    a = floor(y)",
     "a known integer": "y = i32(3.5 if z > 0.0 else x * 0.7)\n    a = f32(y)",
     "iterations": "a = 0.0\n    for i in range(min(n, 4)):\n        a += floor(x + f32(i) * 0.7)",
-    "iterations after a fork": (
-        "a = floor(z)\n    for i in range(min(n, 4)):\n        a += floor(x + f32(i) * 0.7)"
-    ),
-    "iterations within iterations": (
-        "a = 0.0\n    for i in range(min(n, 3)):\n        a += floor(x + f32(i) * 0.7)\n"
-        "        for j in range(min(n, 4)):\n            a += floor(x + f32(j) * 0.3 + f32(i))"
-    ),
 }
 """Of the first lane alone there are fewer forks than of both: it has no second value, number or iteration."""
 
