@@ -6,7 +6,17 @@ import sys
 
 from codegen.files import write_text
 from codegen.library import Library, load_library
-from conformance.guarantees.table import PATH, Found, differences, read, stale, surveyed, text
+from conformance.guarantees.table import (
+    MADE_WITH,
+    PATH,
+    Found,
+    differences,
+    made_with,
+    read,
+    stale,
+    surveyed,
+    text,
+)
 
 REPORTED = "wgsl"
 USAGE = "python -m conformance.guarantees [--all | --check | FUNCTION...]"
@@ -34,6 +44,7 @@ def main(arguments: list[str]) -> int:
     print("\n".join(report(library, whole)))
     print(f"surveyed {len(renewed)} functions")
     write_text(PATH, text(whole))
+    write_text(MADE_WITH, made_with() + "\n")
     return 0
 
 

@@ -6,12 +6,17 @@ import hashlib
 import json
 import re
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 
 from codegen.guarantees import SPECIFICATIONS, SURVEYED, Guarantee, Surveyed, guarantees
 from codegen.library import Library, default_root, load_library
 from conformance.guarantees.survey import drawn_for, survey
 
 PATH = default_root() / SURVEYED
+PROJECT = Path(__file__).parents[2]
+MADE_WITH = Path(__file__).with_name("made_with.txt")
+"""A hash of what all figures were made with: another one, and every function is surveyed anew."""
+MAKERS = ("codegen/intervals", "conformance/cases", "conformance/guarantees", "conformance/reference")
 SHARE_TOLERANCE = 2e-3
 """Shares that differ by less count as equal: lanes near a threshold depend on float64's last bits."""
 ERROR_TOLERANCE = 0.06
@@ -49,8 +54,19 @@ def meaning(library: Library, name: str) -> str:
     return digest.hexdigest()[:12]
 
 
+def made_with() -> str:
+    """A hash of intervals, points and references as they are now."""
+    digest = hashlib.sha256()
+    for folder in MAKERS:
+        for path in sorted(p for p in (PROJECT / folder).rglob("*") if p.suffix in (".py", ".toml", ".csv")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
 def stale(library: Library, found: Found) -> list[str]:
-    """Public functions that the file lacks or knows in another form."""
+    """Public functions that the file lacks or knows in another form; all if they were made otherwise."""
+    if MADE_WITH.read_text(encoding="ascii").strip() != made_with():
+        return list(library.public)
     return [n for n in library.public if n not in found or found[n].of != meaning(library, n)]
 
 

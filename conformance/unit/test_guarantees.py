@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -31,7 +32,7 @@ from codegen.ir.nodes import Function
 from codegen.library import load_library
 from conformance.guarantees import PATH, read, stale
 from conformance.guarantees.survey import drawn_for, survey
-from conformance.guarantees.table import differences, meaning, surveyed, text
+from conformance.guarantees.table import MAKERS, differences, made_with, meaning, surveyed, text
 from conformance.unit.support.tolerances import tolerance
 
 LIBRARY = load_library()
@@ -49,6 +50,23 @@ def test_file_fits_the_library() -> None:
             assert 0.0 <= g.hard <= 1.0
             assert len(g.errors) == len(LIBRARY.bounds.get(name, ()))
             assert bool(g.causes) == (not g.everywhere), name
+
+
+def test_all_is_stale_when_intervals_points_or_references_change(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    other = tmp_path / "made_with.txt"
+    other.write_text("0123456789abcdef\n", encoding="ascii")
+    monkeypatch.setattr("conformance.guarantees.table.MADE_WITH", other)
+    assert stale(LIBRARY, read()) == list(LIBRARY.public)
+    for folder in MAKERS:
+        (tmp_path / folder).mkdir(parents=True)
+    monkeypatch.setattr("conformance.guarantees.table.PROJECT", tmp_path)
+    known = {made_with()}
+    for folder in MAKERS:
+        (tmp_path / folder / "more.py").write_text(f"# {folder}", encoding="ascii")
+        known.add(made_with())
+    assert len(known) == 1 + len(MAKERS)
 
 
 def test_file_is_written_as_it_is_read() -> None:

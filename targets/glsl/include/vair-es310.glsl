@@ -6086,7 +6086,7 @@ highp float vair_strand_value(highp vec3 l, highp vec3 v, highp float exponent) 
 //   error       relative <= 6e-5 (floor 0.001): widths from 0.01, l from 1e-5 rad off -v; relative
 //               <= 2e-5 (floor 0.001): widths from 0.01, l and v up to a right angle apart;
 //               relative <= 0.02 (floor 0.001): widths from 1e-4, l + v longer than 1e-6
-//   guaranteed  100 % of the domain by the OpenGL ES specification, to 6.6e-5, 3.4e-5, 0.00061
+//   guaranteed  100 % of the domain by the OpenGL ES specification, to 7.1e-5, 5.2e-5, 0.011
 //               relative in turn
 //   form        exp(-e) (1 + t^2) / (2 pi alpha_x alpha_y |g.z|), g = l + v, t the slope of g: v.h
 //               = |g| / 2 removes both h and the dot product
@@ -6145,7 +6145,7 @@ highp vec3 vair_ward_sample(highp vec2 u, highp vec3 v, highp float alpha_x, hig
 //   error       relative <= 8e-5 (floor 0.001): widths from 0.01, l from 1e-5 rad off -v; relative
 //               <= 4e-5 (floor 0.001): widths from 0.01, l and v up to a right angle apart;
 //               relative <= 0.002 (floor 0.001): widths from 1e-4, all directions
-//   guaranteed  100 % of the domain by the OpenGL ES specification, to 6.4e-5, 4.5e-5, 0.0011
+//   guaranteed  100 % of the domain by the OpenGL ES specification, to 6.7e-5, 4.5e-5, 0.0014
 //               relative in turn
 //   form        the exponent is compared with 80 before the division, so that g.z -> 0 is 0 and
 //               never 0 * inf
