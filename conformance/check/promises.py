@@ -177,7 +177,8 @@ def _inputs(given: Mapping[str, Any]) -> dict[str, Array]:
 
 
 def _hammersley(library: Library, name: str) -> bool:
-    """Points are exact, also where quotients are off in their last bits; i >= n counts as n - 1."""
+    """Points are exact, also where quotients are off in their last bits; i >= n counts as n - 1, and n = 0
+    gives 2^-24."""
     rng = np.random.default_rng(SEED)
     n = np.exp2(rng.uniform(0.0, 20.0, COUNT)).astype(np.uint32)
     i = (rng.random(COUNT) * n).astype(np.uint32)
@@ -193,7 +194,8 @@ def _hammersley(library: Library, name: str) -> bool:
             return False
     beyond = np.asarray(evaluate(library, name, {"i": n + np.uint32(3), "n": n}))
     last = np.asarray(evaluate(library, name, {"i": n - np.uint32(1), "n": n}))
-    return np.array_equal(beyond[:, 0], last[:, 0])
+    of_none = np.asarray(evaluate(library, name, {"i": i, "n": np.zeros(COUNT, np.uint32)}))
+    return np.array_equal(beyond[:, 0], last[:, 0]) and bool((of_none[:, 0] == np.float32(2.0**-24)).all())
 
 
 def _shell_height(library: Library, name: str) -> bool:

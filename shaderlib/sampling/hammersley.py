@@ -17,7 +17,7 @@ def hammersley(i: Annotated[u32, Interval(0, 1048575)], n: Annotated[u32, Interv
     n           number of points, at most 2^20
     returns     (floor(i 2^24 / n) 2^-24, unit_float(radical_inverse_base2(i))), both in [0, 1); (0, 0)
                 first
-    degenerate  i >= n counts as n - 1 in the first coordinate; n = 0 as 1
+    degenerate  i >= n counts as n - 1 in the first coordinate; n = 0 gives 2^-24 there
     form        the quotient in floats is off by at most 7.1 steps of 2^-24 (inverse 2.5 ulp, product 1 ulp,
                 in any direction), so 8 below it lies 0 to 16.6 below i 2^24 / n. What is missing, times n,
                 is a whole number below 2^25, known exactly modulo 2^32. Its own quotient in floats is off
