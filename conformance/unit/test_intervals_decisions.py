@@ -220,6 +220,14 @@ def test_one_integer_where_a_way_is_told(name: str) -> None:
         assert x.high[lane] - x.low[lane] <= kept.max() - kept.min() + 0.01
 
 
+def test_integer_is_known_where_all_lanes_are_told_a_way() -> None:
+    for ways, is_known in (([0, 1], True), ([0, -1], False)):
+        here = context(2, np.array(ways))
+        found = logic.to_integer(here, Range(np.array([0.5, 0.5]), np.array([1.5, 1.5])), True)
+        assert found.is_point == is_known
+        assert found.low.tolist() == [0, max(ways[1], 0)] and found.high.tolist() == [0, 1]
+
+
 def test_too_many_integers_are_no_fork() -> None:
     ends = [MOST_WAYS - 1.5, MOST_WAYS - 0.5, MOST_WAYS + 0.5, 1e6]
     x = Range(np.full(4, 0.5), np.array(ends))

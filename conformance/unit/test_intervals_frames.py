@@ -102,6 +102,19 @@ def test_forks_of_a_loop_are_those_of_all_its_rounds(before: int, start: int, st
         assert here.forks == before + 2 * (stop - start)
 
 
+@pytest.mark.parametrize(("rounds_run", "told"), [((0, 0), 0), ((1, 2), 0), ((3, 3), 1), ((2, 9), 1)])
+def test_rounds_that_no_lane_runs_tell_no_cause(rounds_run: tuple[int, int], told: int) -> None:
+    """They are not evaluated: what may be anything there is nobody's."""
+    divisor = ir.Binary(F32, "-", const(2.0), ir.Convert(F32, ir.Var(I32, "i")))
+    step = ir.Let("a", ir.Binary(F32, "/", const(1.0), divisor))
+    function = ir.Function("probe", "", "base", None, (), F32, (), ir.Doc("", {}), Place("", 1))
+    here = Context(load_table("wgsl"), CauseBook(), 1)
+    loop = ir.For("i", 0, 4, (step,), limit=ir.Var(I32, "n"))
+    with np.errstate(all="ignore"):
+        Frame(LIBRARY, here, function, {"n": wholes(True, rounds_run)}).block((loop,), ALWAYS)
+    assert len(here.book.causes) == told
+
+
 def test_forks_of_a_loop_in_a_loop_are_those_of_all_rounds_of_both() -> None:
     step, limit = ir.Let("b", ir.Builtin(F32, "floor", (const(0.5),))), ir.Var(I32, "n")
     loop = ir.For("i", 0, 4, (step, ir.For("k", 0, 3, (step, step), limit=limit)), limit=limit)
@@ -177,6 +190,13 @@ def test_literals_are_one_value_each() -> None:
     one = ir.Const(F32, 7.0)
     assert frame.expr(one) is frame.expr(one)
     assert Frame(LIBRARY, context, function, {}).expr(ir.Const(F32, 7.0)) is frame.expr(one)
+
+
+def test_float_as_a_float_is_the_value_itself() -> None:
+    function = ir.Function("probe", "", "base", None, (), F32, (), ir.Doc("", {}), Place("", 1))
+    x = Range(np.array([0.25]), np.array([1.75]))
+    frame = Frame(LIBRARY, Context(load_table("wgsl"), CauseBook(), 1), function, {"x": x})
+    assert frame.expr(ir.Convert(F32, ir.Var(F32, "x"))) is x
 
 
 CALLS = """@helper

@@ -10,13 +10,14 @@ Plan. Maps by hand or at random.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from codegen.evaluate import evaluate
 from codegen.evaluate.textures import TextureMap
-from codegen.intervals import TABLES, load_table
+from codegen.intervals import TABLES, load_table, permitted
 from codegen.intervals.accuracy import Filter
 from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import Context
@@ -47,6 +48,21 @@ def test_lookup_between_levels_is_off_by_the_weight_of_levels_alone(name: str) -
         for end, wanted in ((component.low, lod - accuracy.level), (component.high, lod + accuracy.level)):
             np.testing.assert_allclose(end, np.clip(wanted, 0.0, 3.0), rtol=0.0, atol=slack)
         assert (component.low <= lod).all() and (component.high >= lod).all()
+
+
+def test_function_looks_up_in_the_level_that_it_asks_for(tmp_path: Path) -> None:
+    """And in the largest one where it asks for none."""
+    text = (
+        'def probe(t: Annotated[Texture, Edges("repeat", "clamp")], uv: P, lod: X) -> vec2:\n'
+        "    return vec2(lookup_level(t, uv, lod).x, lookup(t, uv).x)\n"
+    )
+    levels = [np.full((size, size, 4), k + 1, np.float32) for k, size in enumerate((4, 2, 1))]
+    lod = np.array([0.0, 1.0, 2.0], np.float32)
+    inputs = {"t": levels, "uv": np.full((3, 2), 0.5, np.float32), "lod": lod}
+    found: Any = permitted(library_of(tmp_path, text), "probe", inputs, "wgsl")
+    for column, expected in ((0, lod + 1.0), (1, np.ones(3))):
+        assert (found.low[:, column] <= expected).all() and (expected <= found.high[:, column]).all()
+    assert (found.high[:, 1] < 1.5).all(), "the largest level is 1 everywhere"
 
 
 @pytest.mark.parametrize("along", [0, 1])
