@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.intervals import load_table, logic, operations
+from codegen.intervals import compiled, load_table, logic, operations
 from codegen.intervals.causes import CauseBook
 from codegen.intervals.context import MOST_WAYS, Context, Ways
 from codegen.intervals.values import Range, Truth, Whole, choose, constant
@@ -170,6 +170,23 @@ def test_what_may_be_anything_tells_nothing_and_forks_nothing(op: str, which: in
         for x, boxes in ((a, [p[0] for p in PAIRS]), (b, [p[1] for p in PAIRS])):
             np.testing.assert_array_equal(x.low[free], column([box[0] for box in boxes], copies)[free])
             np.testing.assert_array_equal(x.high[free], column([box[1] for box in boxes], copies)[free])
+
+
+@pytest.mark.parametrize("whole", [False, True])
+def test_what_may_be_anything_is_not_decided_by_its_ends(
+    whole: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor where all lanes would be, in however many of them."""
+    monkeypatch.setattr(compiled, "FEWEST", 2)
+    cause = np.array([1, 0], np.int16)
+    for op, holds in (("<", True), ("<=", True), ("==", False), ("!=", True), (">", False), (">=", False)):
+        for codes in ((cause, None), (None, cause)):
+            a, b = (
+                operand([box] * 2, 1, whole, code) for box, code in zip([(0, 1), (2, 3)], codes, strict=True)
+            )
+            found = operations.binary(context(2), op, a, b)
+            assert isinstance(found, Truth)
+            assert found.true.tolist() == [True, holds] and found.false.tolist() == [True, not holds]
 
 
 QUARTERS = [(a / 4.0, b / 4.0) for a in range(-11, 12) for b in range(a, min(a + 14, 12))]
