@@ -2,7 +2,7 @@
 
 Mesa 22.3.6 turns (a + b) + c with a constant c into (a + c) + b, and the same for products; it does so across
 locals and the turns of a loop (conformance.programs.chains), reorders sums and takes out factors that their
-terms share (conformance.programs.gathered), and factors interpolations for some drivers
+terms share (conformance.programs.gathered), and factors or distributes interpolations for some drivers
 (conformance.programs.interpolated). WGSL (Reassociation and Fusion: any reordering whose answer is the same
 if computed exactly), Vulkan (distributivity included) and GLSL without `precise` allow rearrangement; the
 accuracy tables judge expressions as written. A result that only this explains is counted as rearranged, and
@@ -25,7 +25,7 @@ from codegen.ir.types import Vector
 from codegen.library import Library
 from conformance.programs.chains import chained, straightened
 from conformance.programs.gathered import gathered, reordered
-from conformance.programs.interpolated import interpolated
+from conformance.programs.interpolated import interpolated, weighted
 
 REARRANGING = frozenset({"glsl", "glsl_es", "vulkan", "wgsl", "opencl_relaxed"})
 """Accuracy tables of specifications that allow it."""
@@ -57,7 +57,7 @@ def _forms(
 ) -> Iterator[tuple[Library, Any]]:
     """Every rearranged form of a function with its arguments, the ones that cost least first."""
     selected = library.select([name]).functions
-    for change in (_moved(_inwards), _moved(_outwards), interpolated):
+    for change in (_moved(_inwards), _moved(_outwards), interpolated, weighted):
         yield library.with_functions(map(change, selected)), inputs
     in_any_order = table.row("dot").accuracy == ANY_ORDER
     if in_any_order:
