@@ -12,7 +12,7 @@ from codegen.library import load_library
 from conformance.picture.backends import open_backend
 from conformance.picture.from_maps.__main__ import main
 from conformance.picture.from_maps.plate import PLAN, Panel, Plate, made_ready
-from conformance.picture.from_maps.ways import WAYS
+from conformance.picture.from_maps.ways import WAYS, truth
 from conformance.picture.tolerances import tolerance
 from conformance.unit.support.drivers import need
 from targets import TARGETS, TargetUnavailable, probe
@@ -57,7 +57,16 @@ def test_drivers_draw_the_same_panels() -> None:
 
 @pytest.mark.nightly
 def test_no_round_lobe_stands_in_for_brushed_metal() -> None:
-    panels = dict(zip(WAYS, drawn("ward", "glsl"), strict=True))
+    """At all covered samples, where filtered errs 0.67 to 0.84 times as much as plain, over 24 shifts.
+
+    At the plate's 64 points it is 0.58 to 1.26: two of them err most by far, and their noise decides.
+    """
+    need("glsl")
+    made = plate("ward")
+    (row,) = made.rows
+    whole = replace(row, points=np.arange(len(row.body)), truth=truth(row.body, row.env, made.look))
+    drawn_whole = replace(made, rows=(whole,)).draw(open_backend("glsl", LIBRARY))
+    panels = dict(zip(WAYS, drawn_whole, strict=True))
     assert panels["filtered"].error < panels["plain"].error < panels["prefiltered"].error
     assert panels["prefiltered"].error > tolerance("round_lobe_error")
 
