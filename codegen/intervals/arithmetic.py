@@ -143,13 +143,21 @@ def _with_fused(low: Array, high: Array, a: Range, b: Range) -> tuple[Array, Arr
 
 
 def subtract(context: Context, a: Range, b: Range) -> Range:
-    """a - b; 0 where both are one value."""
+    """a - b; 0 where both are one value, if it is rounded on both sides."""
     if a is b and a.cause is None:
         zero = np.zeros(1)
-        return Range(zero, zero)
+        return Range(zero, zero) if a.product is None else _rounding_of_product(context, a)
     if (found := bulk.subtract(context, a, b)) is not None:
         return checked(context, found, first(a.cause, b.cause))
     return add(context, a, negate(b))
+
+
+def _rounding_of_product(context: Context, a: Range) -> Range:
+    """A product minus itself, of which a multiply-add may round only one: at most half a step of it."""
+    most = 0.5 * numbers.ulp(np.maximum(np.abs(a.low), np.abs(a.high)))
+    lost = (a.low < SMALLEST) & (a.high > -SMALLEST)  # one side may be flushed
+    most = np.where(lost, np.maximum(most, SMALLEST), most)
+    return settle(context, -most, most, None)
 
 
 def multiply(context: Context, a: Range, b: Range) -> Range:

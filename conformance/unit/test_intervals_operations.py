@@ -119,6 +119,28 @@ def test_one_value_is_one_value(text: str, tmp_path: Path) -> None:
     assert (found.high <= most).all()
 
 
+@pytest.mark.parametrize("table", ["opencl", "opencl_relaxed"])
+def test_product_less_itself_may_be_what_rounding_lost(table: str, tmp_path: Path) -> None:
+    """fma(a, b, -(a b)) is a contraction of a b - a b; nothing farther than half a step, or than flushing."""
+    library = library_of(tmp_path, "def probe(a: X, b: X) -> f32:\n    return a * b - a * b\n")
+    rng = np.random.default_rng(SEED)
+    a, b = (rng.uniform(0.5, 2.0, 500).astype(np.float32) for _ in "ab")
+    a[:100] *= np.float32(2.0**-126)
+    exact = a.astype(np.float64) * b
+    rounded = exact.astype(np.float32).astype(np.float64)
+    lost = exact - rounded
+    found: Any = permitted(library, "probe", {"a": a, "b": b}, table)
+    assert found.guaranteed.all() and (lost[100:] != 0.0).any()
+    for value in (lost, -lost, np.zeros(500)):
+        assert ((found.low <= value) & (value <= found.high))[100:].all()
+    most = 0.5 * np.spacing(np.abs(rounded[100:]).astype(np.float32)).astype(np.float64)
+    assert (found.high[100:] <= most).all() and (found.low[100:] >= -most).all()
+    flushed = np.where(np.abs(exact) < numbers.SMALLEST, exact, 0.0)[:100]
+    assert (
+        (flushed > 0.0).any() and (found.high[:100] >= flushed).all() and (found.low[:100] <= -flushed).all()
+    )
+
+
 def test_denormals_may_be_read_as_zero(tmp_path: Path) -> None:
     library = library_of(tmp_path, "def probe(a: X) -> f32:\n    return 1.0 if a > 0.0 else 2.0\n")
     found: Any = permitted(library, "probe", {"a": np.array([1e-40, 1.0, 0.0], np.float32)}, "wgsl")
