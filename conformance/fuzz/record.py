@@ -8,7 +8,6 @@ finding stays until its program is run again and found right: then its number st
 from __future__ import annotations
 
 import functools
-import hashlib
 import json
 import re
 from collections import Counter
@@ -20,9 +19,9 @@ from typing import Any
 from codegen.files import write_text
 from conformance.fuzz.engine import Tally
 from conformance.fuzz.task import COUNTS
+from conformance.sources import hash_of
 
 RESULTS = Path(__file__).with_name("results.json")
-ROOT = Path(__file__).parents[2]
 PARTS = ("frontend", "ir", "ops", "passes", "emit", "evaluate", "intervals")
 SOURCES = (*(f"codegen/{part}" for part in PARTS), "targets", "conformance/fuzz", "conformance/programs")
 """What programs, texts and verdicts depend on."""
@@ -112,8 +111,4 @@ def write(entries: Iterable[Entry], path: Path = RESULTS) -> None:
 @functools.cache
 def source_hash() -> str:
     """Of everything that a verdict depends on, so that entries say what they hold of."""
-    digest = hashlib.sha256()
-    for folder in SOURCES:
-        for path in sorted(p for p in (ROOT / folder).rglob("*") if p.suffix in (".py", ".toml")):
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+    return hash_of(SOURCES)

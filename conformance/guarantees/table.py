@@ -11,9 +11,9 @@ from pathlib import Path
 from codegen.guarantees import SPECIFICATIONS, SURVEYED, Guarantee, Surveyed, guarantees
 from codegen.library import Library, default_root, load_library
 from conformance.guarantees.survey import drawn_for, survey
+from conformance.sources import CODE, hash_of
 
 PATH = default_root() / SURVEYED
-PROJECT = Path(__file__).parents[2]
 MADE_WITH = Path(__file__).with_name("made_with.txt")
 """A hash of what all figures were made with: another one, and every function is surveyed anew."""
 MAKERS = ("codegen/intervals", "conformance/cases", "conformance/guarantees", "conformance/reference")
@@ -56,11 +56,7 @@ def meaning(library: Library, name: str) -> str:
 
 def made_with() -> str:
     """A hash of intervals, points and references as they are now."""
-    digest = hashlib.sha256()
-    for folder in MAKERS:
-        for path in sorted(p for p in (PROJECT / folder).rglob("*") if p.suffix in (".py", ".toml", ".csv")):
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+    return hash_of(MAKERS, (*CODE, ".csv"))
 
 
 def stale(library: Library, found: Found) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
@@ -18,6 +17,7 @@ from conformance.metamorphic import inputs, source
 from conformance.metamorphic.engine import Count, Report, run_pairs
 from conformance.metamorphic.pairs import Pair, draw, input_pair
 from conformance.metamorphic.plan import SEED, library_pair, program_pair, random_programs
+from conformance.sources import hash_of
 from targets import open_runtime
 
 TASK = "conformance.metamorphic.task:run"
@@ -25,7 +25,6 @@ PROGRAMS = 200
 """Random programs that are rewritten."""
 SUBJECTS = 50
 """Functions or programs of one job: some ten seconds."""
-ROOT = Path(__file__).parents[2]
 SOURCES = ("conformance/metamorphic", "conformance/fuzz", "conformance/programs", "codegen/intervals")
 """What pairs and their verdicts depend on, beside the library."""
 
@@ -81,11 +80,7 @@ def programs() -> tuple[Library, list[Case]]:
 @cache
 def source_hash() -> str:
     """Of all that pairs and verdicts depend on."""
-    digest = hashlib.sha256(load_library().select().source_hash.encode())
-    for folder in SOURCES:
-        for path in sorted(p for p in (ROOT / folder).rglob("*") if p.suffix in (".py", ".toml")):
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+    return hash_of(SOURCES, more=load_library().select().source_hash)
 
 
 def run_jobs(

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +20,7 @@ from conformance.executor import Job
 from conformance.soundness.enclosure import Array
 from conformance.soundness.held import Held, either_way, held, holds, precisely
 from conformance.soundness.walk import enclosed
+from conformance.sources import hash_of
 
 TASK = "conformance.soundness.sweep:run"
 BATCH = 1 << 16
@@ -34,7 +33,7 @@ MOST_HARD = 20_000
 """Points of one family at most: each stored point with each parameter that it fits comes first."""
 PRECISE = 2048
 """Lanes of a part that are undecided under some table and evaluated in 50 digits; others stay undecided."""
-INTERVALS = Path(__file__).parents[2] / "codegen/intervals"
+INTERVALS = "codegen/intervals"
 
 
 @dataclass
@@ -160,7 +159,4 @@ def run(job: Job) -> dict[str, Any]:
 @functools.cache
 def intervals_hash() -> str:
     """Of everything that makes intervals: what was shown of others is stale."""
-    digest = hashlib.sha256()
-    for path in sorted([*INTERVALS.rglob("*.py"), *INTERVALS.rglob("*.toml")]):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+    return hash_of([INTERVALS])

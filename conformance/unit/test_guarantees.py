@@ -61,7 +61,7 @@ def test_all_is_stale_when_intervals_points_or_references_change(
     assert stale(LIBRARY, read()) == list(LIBRARY.public)
     for folder in MAKERS:
         (tmp_path / folder).mkdir(parents=True)
-    monkeypatch.setattr("conformance.guarantees.table.PROJECT", tmp_path)
+    monkeypatch.setattr("conformance.sources.PROJECT", tmp_path)
     known = {made_with()}
     for folder in MAKERS:
         (tmp_path / folder / "more.py").write_text(f"# {folder}", encoding="ascii")
