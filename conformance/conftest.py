@@ -6,6 +6,7 @@ from collections.abc import Generator
 
 import pytest
 
+from conformance.memory import give_back
 from conformance.unit.support.drivers import need
 from targets import TARGETS, TargetUnavailable, TimedRuntime, open_runtime, probe
 
@@ -25,6 +26,12 @@ def pytest_collection() -> Generator[None, object, object]:
     finally:
         gc.freeze()
         gc.enable()
+
+
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """Between two files of tests, give back what the first one's drivers and arrays have freed."""
+    if nextitem is None or nextitem.path != item.path:
+        give_back()
 
 
 @pytest.fixture(scope="session", params=TARGETS)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import signal
 from collections import deque
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -11,6 +10,7 @@ from concurrent.futures.process import BrokenProcessPool
 from typing import Protocol
 
 from conformance.executor.jobs import Job, Result, available, perform
+from conformance.executor.worker import leave_interrupts_to_the_parent, perform_and_tell
 
 ATTEMPTS = 3
 """How often a job is tried whose worker dies; then it is reported as failed."""
@@ -35,13 +35,11 @@ class Here:
             yield Result(job, {}, missing) if missing else perform(job)
 
 
-def leave_interrupts_to_the_parent() -> None:
-    """For a worker: Ctrl-C reaches all processes of a terminal, also those in the middle of a driver."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
 class Processes:
     """A pool of processes; each opens its own devices. A process that dies loses nothing.
+
+    Drivers keep some memory of every program that they compile. Once a process has grown by that, the pool
+    ends when it is done with what was handed out, and another one goes on.
 
     Interrupted, it ends when its workers are done with the jobs that they have; interrupted again, at once.
     """
@@ -71,18 +69,19 @@ class Processes:
         yield Result(job, {}, f"the worker died in each of {ATTEMPTS} attempts")
 
     def _pool(self, waiting: deque[Job]) -> Generator[Result, None, list[Job]]:
-        """Run what waits in one pool, until a process dies; returns the jobs that were under way then."""
+        """Run what waits in one pool, until a process has grown or dies; returns what was under way then."""
         spawn = multiprocessing.get_context("spawn")  # drivers do not survive a fork
-        under_way: dict[Future[Result], Job] = {}
+        under_way: dict[Future[tuple[Result, bool]], Job] = {}
         died: list[Job] = []
+        ends = False
         pool = ProcessPoolExecutor(
             min(self.workers, len(waiting)), mp_context=spawn, initializer=leave_interrupts_to_the_parent
         )
         try:
-            while under_way or (waiting and not died):
-                while waiting and not died and len(under_way) < self.workers * QUEUED_PER_WORKER:
+            while under_way or (waiting and not ends):
+                while waiting and not ends and len(under_way) < self.workers * QUEUED_PER_WORKER:
                     try:
-                        future = pool.submit(perform, waiting[0])
+                        future = pool.submit(perform_and_tell, waiting[0])
                     except BrokenProcessPool:
                         if not under_way:
                             return died  # an idle process died: another pool goes on
@@ -92,9 +91,13 @@ class Processes:
                 for future in finished:
                     job = under_way.pop(future)
                     try:
-                        yield future.result()
+                        result, has_grown = future.result()
                     except BrokenProcessPool:
                         died.append(job)
+                        ends = True
+                    else:
+                        ends |= has_grown
+                        yield result
         finally:
             try:
                 pool.shutdown(cancel_futures=True)

@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from conformance.executor import Here, Job, Processes, Result, local, open_executor
+from conformance.executor import Here, Job, Processes, Result, local, open_executor, worker
 
 ECHO = "conformance.executor.jobs:echo"
 
@@ -124,6 +124,22 @@ def test_a_process_that_dies_while_idle_is_replaced(monkeypatch: pytest.MonkeyPa
     jobs = [Job("conformance.executor.jobs:echo", "f", "numpy", 0, k + 1) for k in range(3)]
     assert {r.job: r.data for r in Processes(1).run(jobs)} == {r.job: r.data for r in Here().run(jobs)}
     assert (BreaksWhenIdle.opened, BreaksWhenIdle.refused) == (2, 1)
+
+
+def test_a_process_that_has_grown_is_replaced() -> None:
+    """After three jobs it holds too much; it does what it was given, one more, and another one goes on."""
+    jobs = [Job("conformance.unit.cluster_tasks:hoard", "f", "numpy", seed=k) for k in range(6)]
+    answers = list(Processes(1).run(jobs))
+    assert sorted(r.job.seed for r in answers) == list(range(6)) and all(r.done for r in answers)
+    assert [r.data["kept"] for r in answers] == [1, 2, 3, 4, 1, 2]
+    assert len({r.data["pid"] for r in answers}) == 2
+
+
+def test_a_process_has_grown_when_it_holds_much_and_more_than_at_first() -> None:
+    assert worker.has_grown(worker.LARGE // 4, worker.LARGE + 1)
+    assert not worker.has_grown(worker.LARGE // 4, worker.LARGE)
+    assert not worker.has_grown(worker.LARGE, worker.LARGE + 1), "it needs as much"
+    assert not worker.has_grown(0, 0), "the system does not tell"
 
 
 def test_options_choose_the_executor() -> None:
