@@ -44,6 +44,12 @@ _HINTS: dict[type[ast.AST], str] = {
 _CASTS: dict[str, Scalar] = {"f32": F32, "i32": I32, "u32": U32}
 
 
+def _element(type_: Type) -> Scalar | None:
+    """The type of a number that stands beside an operand of this type."""
+    element = type_.element if isinstance(type_, Vector) else type_
+    return element if isinstance(element, Scalar) else None
+
+
 class ExpressionLowering:
     """Lowers the expressions of one function.
 
@@ -175,12 +181,9 @@ class ExpressionLowering:
         """Two operands; an integer literal takes the type of the other one."""
         if self._is_whole_number(left) and not self._is_whole_number(right):
             b = self.lower(right, expected)
-            return self.lower(left, b.type if isinstance(b.type, Scalar) else None), b
+            return self.lower(left, _element(b.type)), b
         a = self.lower(left, expected)
-        if self._is_whole_number(right):
-            element = a.type.element if isinstance(a.type, Vector) else a.type
-            return a, self.lower(right, element if isinstance(element, Scalar) else None)
-        return a, self.lower(right, expected)
+        return a, self.lower(right, _element(a.type) if self._is_whole_number(right) else expected)
 
     def _is_whole_number(self, node: ast.expr) -> bool:
         if self._is_local(node) or isinstance(node, ast.Name):

@@ -77,6 +77,10 @@ EXPRESSIONS: dict[str, tuple[str, ir.Expr]] = {
         "uvec3(n) * 2",
         ir.Binary(UVEC3, "*", ir.Construct(UVEC3, (N,)), ir.Const(U32, 2)),
     ),
+    "literal and an integer vector": (
+        "2 * uvec3(n)",
+        ir.Binary(UVEC3, "*", ir.Const(U32, 2), ir.Construct(UVEC3, (N,))),
+    ),
     "scaled": ("v * x", ir.Binary(VEC3, "*", V, X)),
     "scaled from the left": ("2.0 * v", ir.Binary(VEC3, "*", f32(2.0), V)),
     "component": ("v.y", ir.Swizzle(F32, V, "y")),
