@@ -7,7 +7,7 @@ import signal
 from conformance.executor.jobs import Job, Result, perform
 from conformance.memory import give_back, resident
 
-LARGE = 600 * 2**20
+LARGE = 400 * 2**20
 """Bytes from which on a process may have grown."""
 GROWTH = 2.0
 """How many times what it held after its first job a process that has grown holds."""

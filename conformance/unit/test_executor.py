@@ -131,7 +131,7 @@ def test_a_process_that_has_grown_is_replaced() -> None:
     jobs = [Job("conformance.unit.cluster_tasks:hoard", "f", "numpy", seed=k) for k in range(6)]
     answers = list(Processes(1).run(jobs))
     assert sorted(r.job.seed for r in answers) == list(range(6)) and all(r.done for r in answers)
-    assert [r.data["kept"] for r in answers] == [1, 2, 3, 4, 1, 2]
+    assert sorted(r.data["kept"] for r in answers) == [1, 1, 2, 2, 3, 4]
     assert len({r.data["pid"] for r in answers}) == 2
 
 
