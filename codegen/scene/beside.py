@@ -14,6 +14,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
 from multiprocessing.connection import Connection
+from multiprocessing.context import ForkProcess
 from typing import Any, TypeVar
 
 Result = TypeVar("Result")
@@ -22,52 +23,64 @@ Second = TypeVar("Second")
 Third = TypeVar("Third")
 
 
-def beside(make: Callable[[], Result], *, forked: bool) -> Callable[[], Result]:
-    """Start the work; what is given back waits for its result.
+class Beside:
+    """Works in processes of their own; a context: at its end, what nobody waited for is given up.
 
-    make    the work; done by whoever waits where nothing can be forked or the process ends without a result
-    forked  whether a process may be forked
+    forked  whether a process may be forked; else the works are done by whoever waits for them
     """
-    (result,) = _in_turn([make], forked)
-    return result
 
+    def __init__(self, *, forked: bool) -> None:
+        self._forked = forked and "fork" in multiprocessing.get_all_start_methods() and os.cpu_count() != 1
+        self._open: list[tuple[ForkProcess, Connection]] = []
 
-def in_turn_beside(
-    first: Callable[[], First], second: Callable[[], Second], third: Callable[[], Third], *, forked: bool
-) -> tuple[Callable[[], First], Callable[[], Second], Callable[[], Third]]:
-    """The same for works that one process does in turn; it goes on while the results before are used."""
-    one, two, three = _in_turn([first, second, third], forked)
-    return one, two, three
+    def __enter__(self) -> Beside:
+        return self
 
-
-def each_beside(works: Sequence[Callable[[], Result]], *, forked: bool) -> Sequence[Callable[[], Result]]:
-    """The same for any number of works of one kind."""
-    return _in_turn(works, forked) if works else ()
-
-
-def _in_turn(works: Sequence[Callable[[], Any]], forked: bool) -> Sequence[Callable[[], Any]]:
-    if not forked or "fork" not in multiprocessing.get_all_start_methods() or os.cpu_count() == 1:
-        return works
-    context = multiprocessing.get_context("fork")
-    receiving, sending = context.Pipe(duplex=False)
-    process = context.Process(target=_worked, args=(works, sending), daemon=True)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # of threads: those of BLAS survive a fork
-        process.start()
-    sending.close()
-    received: list[Any] = []
-
-    def result(number: int) -> Any:
-        try:
-            while len(received) <= number:
-                received.append(receiving.recv())
-        except (EOFError, OSError):
-            return works[number]()  # an error is raised here as it is
-        if len(received) == len(works):
+    def __exit__(self, *_: object) -> None:
+        for process, receiving in self._open:
+            receiving.close()
+            process.terminate()
             process.join()
-        return received[number]
 
-    return [partial(result, number) for number in range(len(works))]
+    def one(self, make: Callable[[], Result]) -> Callable[[], Result]:
+        """Start the work; what is given back waits for its result.
+
+        The work is done by whoever waits where nothing can be forked or the process ends without a result.
+        """
+        (result,) = self.each([make])
+        return result
+
+    def in_turn(
+        self, first: Callable[[], First], second: Callable[[], Second], third: Callable[[], Third]
+    ) -> tuple[Callable[[], First], Callable[[], Second], Callable[[], Third]]:
+        """The same for works that one process does in turn; it goes on while the results before are used."""
+        works: list[Callable[[], Any]] = [first, second, third]
+        one, two, three = self.each(works)
+        return one, two, three
+
+    def each(self, works: Sequence[Callable[[], Result]]) -> Sequence[Callable[[], Result]]:
+        """The same for any number of works of one kind."""
+        if not self._forked or not works:
+            return works
+        context = multiprocessing.get_context("fork")
+        receiving, sending = context.Pipe(duplex=False)
+        process = context.Process(target=_worked, args=(works, sending), daemon=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of threads: those of BLAS survive a fork
+            process.start()
+        sending.close()
+        self._open.append((process, receiving))
+        received: list[Result] = []
+
+        def result(number: int) -> Result:
+            try:
+                while len(received) <= number:
+                    received.append(receiving.recv())
+            except (EOFError, OSError):
+                return works[number]()  # an error is raised here as it is
+            return received[number]
+
+        return [partial(result, number) for number in range(len(works))]
 
 
 def _worked(works: Sequence[Callable[[], object]], sending: Connection) -> None:

@@ -23,7 +23,7 @@ from codegen.passes.analysis.operations import operations
 from codegen.passes.probe import operations_left
 from codegen.passes.specialise import Specialised
 from codegen.scene import environment
-from codegen.scene.beside import beside, each_beside, in_turn_beside
+from codegen.scene.beside import Beside
 from codegen.scene.description.document import Scene
 from codegen.scene.description.lights import UNROLLED
 from codegen.scene.environment import ConstantLight, MapError
@@ -127,23 +127,23 @@ class Builder:
     def build(self) -> Outcome:
         """Everything but the files; raises UserError where nothing may be written."""
         try:
-            return self._built()
+            with Beside(forked=not self.executed) as beside:
+                return self._built(beside)
         finally:
             if self.counting is not None:
                 self.counting.close()
 
-    def _built(self) -> Outcome:
+    def _built(self, beside: Beside) -> Outcome:
         begin = time.perf_counter()
         constant, pixels = self.constant_lights()
         general = general_function(self.scene, constant)
         library = self.library.with_functions([general.function])
         self.say("searching")
         drawn = functools.cache(partial(draw, self.scene, general, SEARCH_POINTS))
-        points, wide, ahead = in_turn_beside(
+        points, wide, ahead = beside.in_turn(
             drawn,
             lambda: exact_values(library, general.function.name, drawn()),
             partial(self.ahead, library, general, constant, pixels),
-            forked=not self.executed,
         )
         reducer = Reducer.of(library, self.scene, general, points, None if self.executed else wide)
         self.check_budget(reducer.reference.rounding)
@@ -156,11 +156,11 @@ class Builder:
         prices, chosen = Prices.of(library, first), None
         if self.scene.budget > 0.0:
             chosen = reducer.chosen(prices, self.scene.budget)
-        forked = chosen is not None and not self.executed
         searches = [partial(self.apart, library, reducer, target, chosen) for target in others]
-        following = dict(zip(others, each_beside(searches, forked=forked), strict=True))
+        under_way = searches if chosen is None else beside.each(searches)
+        following = dict(zip(others, under_way, strict=True))
         reduced = reducer.reduced(prices, self.scene.budget, chosen)
-        left = beside(partial(self.remaining, library, reduced), forked=not self.executed)
+        left = beside.one(partial(self.remaining, library, reduced))
         proven, exact, single, error = ahead()
         if single is not None:
             self.results["float32", general.function.body] = single

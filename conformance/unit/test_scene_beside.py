@@ -4,13 +4,15 @@ Plan.
   results  arrays and objects come back as they are, from a process or from whoever waits; one process does
            works in turn, each on what those before left
   errors   an error of the work is raised where its result is asked for
-  ends     a process that ends without a result is made up for
+  ends     a process that ends without a result is made up for; one that nobody waits for is ended
   scenes   the files of a scene that has a map are the same to the byte
 """
 
 from __future__ import annotations
 
+import multiprocessing
 import os
+import time
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +21,7 @@ import pytest
 from codegen.cli import run
 from codegen.errors import UserError
 from codegen.maps.image import exr
-from codegen.scene.beside import beside, in_turn_beside
+from codegen.scene.beside import Beside
 
 SCENE = """
 [scene]
@@ -35,10 +37,18 @@ environment_lights = 2
 """
 
 
+REFUSED = """
+[scene]
+budget = 1e-12
+[shade]
+model = "kajiya_kay"
+"""
+
+
 @pytest.mark.parametrize("forked", [False, True])
 def test_results_come_back(forked: bool) -> None:
-    made = beside(lambda: (os.getpid(), np.arange(300_000)), forked=forked)
-    process, numbers = made()
+    with Beside(forked=forked) as beside:
+        process, numbers = beside.one(lambda: (os.getpid(), np.arange(300_000)))()
     assert (process != os.getpid()) == (forked and (os.cpu_count() or 1) > 1)
     assert np.array_equal(numbers, np.arange(300_000))
 
@@ -51,8 +61,8 @@ def test_works_in_turn_go_on_from_each_other(forked: bool) -> None:
         made.append(len(made))
         return made[-1]
 
-    waits = in_turn_beside(work, work, work, forked=forked)
-    assert [wait() for wait in waits] == [0, 1, 2]
+    with Beside(forked=forked) as beside:
+        assert [wait() for wait in beside.in_turn(work, work, work)] == [0, 1, 2]
     assert bool(made) == (not forked or os.cpu_count() == 1)
 
 
@@ -61,9 +71,8 @@ def test_errors_are_raised_where_the_result_is_asked_for(forked: bool) -> None:
     def refused() -> None:
         raise UserError("no")
 
-    made = beside(refused, forked=forked)
-    with pytest.raises(UserError, match="no"):
-        made()
+    with Beside(forked=forked) as beside, pytest.raises(UserError, match="no"):
+        beside.one(refused)()
 
 
 def test_a_process_that_ends_is_made_up_for() -> None:
@@ -74,7 +83,22 @@ def test_a_process_that_ends_is_made_up_for() -> None:
             os._exit(1)
         return 7
 
-    assert beside(ends, forked=True)() == 7
+    with Beside(forked=True) as beside:
+        assert beside.one(ends)() == 7
+
+
+def test_what_nobody_waits_for_is_given_up(tmp_path: Path) -> None:
+    """Neither a process that still works nor one that holds more than a pipe takes goes on."""
+    with pytest.raises(UserError), Beside(forked=True) as beside:
+        beside.one(lambda: np.zeros(1_000_000))
+        beside.one(lambda: time.sleep(600))
+        assert os.cpu_count() == 1 or len(multiprocessing.active_children()) == 2
+        raise UserError("refused")
+    assert not multiprocessing.active_children()
+    (tmp_path / "scene.toml").write_text(REFUSED, encoding="utf-8")
+    command = ["scene", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "made"), "--no-drivers"]
+    assert run(command) == 2
+    assert not multiprocessing.active_children()
 
 
 def test_a_scene_is_the_same_without_a_second_process(
