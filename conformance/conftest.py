@@ -8,7 +8,7 @@ import pytest
 
 from conformance.memory import give_back
 from conformance.unit.support.drivers import need
-from targets import TARGETS, TargetUnavailable, TimedRuntime, open_runtime, probe
+from targets import TARGETS, TargetUnavailable, TimedRuntime, forget_programs, open_runtime, probe
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -29,8 +29,9 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
-    """Between two files of tests, give back what the first one's drivers and arrays have freed."""
+    """Between two files of tests, drop the first one's programs and give back what was freed."""
     if nextitem is None or nextitem.path != item.path:
+        forget_programs()
         give_back()
 
 

@@ -7,6 +7,7 @@ import importlib
 from threading import Lock
 from typing import cast
 
+from targets.programs import forget_programs
 from targets.protocol import BuildFailed, Device, Runtime, TargetUnavailable, TimedRuntime
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "Runtime",
     "TargetUnavailable",
     "TimedRuntime",
+    "forget_programs",
     "open_runtime",
     "probe",
 ]

@@ -2,7 +2,8 @@
 
 from collections import OrderedDict
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
+from weakref import WeakSet
 
 PROGRAMS_KEPT = 256
 """Built programs per runtime: more than the functions of the library; about half a megabyte each."""
@@ -20,6 +21,7 @@ class Programs(Generic[K, P]):
     def __init__(self, most: int = PROGRAMS_KEPT) -> None:
         self.most = most
         self._kept: OrderedDict[K, P] = OrderedDict()
+        _every.add(self)
 
     def __len__(self) -> int:
         return len(self._kept)
@@ -33,3 +35,16 @@ class Programs(Generic[K, P]):
             self._kept[key] = built
         self._kept.move_to_end(key)
         return self._kept[key]
+
+    def forget(self) -> None:
+        """Keep none of them."""
+        self._kept.clear()
+
+
+_every: WeakSet[Programs[Any, Any]] = WeakSet()
+
+
+def forget_programs() -> None:
+    """Drop what the runtimes of this process keep for another run; not while one is building."""
+    for programs in list(_every):
+        programs.forget()

@@ -14,7 +14,7 @@ from typing import Any
 from conformance.executor import Executor, Job, Result
 from conformance.fuzz.case import make_case
 from conformance.fuzz.engine import BATCH, Finding, Tally, run_cases
-from targets import open_runtime
+from targets import forget_programs, open_runtime
 
 TASK = "conformance.fuzz.task:run"
 PIECE = 5 * BATCH
@@ -28,6 +28,7 @@ def run(job: Job) -> dict[str, Any]:
     """The programs from start to stop of the job's seed, on all of its targets."""
     tally = Tally()
     run_cases(range(job.start, job.stop), job.seed, [open_runtime(target) for target in job.targets], tally)
+    forget_programs()  # none of them is run again
     return {
         "programs": tally.programs,
         **{name: dict(getattr(tally, name)) for name in COUNTS},

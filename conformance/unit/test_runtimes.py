@@ -10,7 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from targets import TARGETS, BuildFailed, TargetUnavailable, TimedRuntime, open_runtime
+from targets import (
+    TARGETS,
+    BuildFailed,
+    TargetUnavailable,
+    TimedRuntime,
+    forget_programs,
+    open_runtime,
+)
 from targets.harness import complete_program
 from targets.lanes import GROUP_LANES, MAX_GROUPS, UNWRITTEN, chunk_lanes
 from targets.programs import Programs
@@ -162,6 +169,19 @@ def test_few_programs_are_kept(target: str, runtime: TimedRuntime, monkeypatch: 
     first.launch()  # dropped from what is kept, and still held by what was prepared with it
     assert np.array_equal(first.read(), words)
     first.release()
+
+
+def test_programs_are_forgotten(target: str, runtime: TimedRuntime, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept: Programs[Any, Any] = Programs()
+    monkeypatch.setattr(runtime, "_programs", kept)
+    words = every_kind_of_word()
+    for number in (0, 1):
+        runtime.run(added(target, number), words, 1)
+    (first, second) = (weakref.ref(program) for program in vars(kept)["_kept"].values())
+    forget_programs()
+    assert len(kept) == 0 and first() is None and second() is None
+    assert np.array_equal(runtime.run(added(target, 1), words, 1), words + np.uint32(1))
+    assert len(kept) == 1
 
 
 def test_the_program_not_asked_for_longest_is_dropped() -> None:
