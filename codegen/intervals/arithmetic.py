@@ -9,13 +9,14 @@ from codegen.intervals.accuracy import Row, Ulp
 from codegen.intervals.causes import Codes, first
 from codegen.intervals.context import Context
 from codegen.intervals.numbers import LARGEST, SMALLEST, Array
-from codegen.intervals.values import Range
+from codegen.intervals.products import exact_product, kept_product, unrounded
+from codegen.intervals.values import Product, Range
 
 _FAR = 2.0**1000
 
 
 def settle(
-    context: Context, low: Array, high: Array, codes: Codes = None, product: tuple[Array, Array] | None = None
+    context: Context, low: Array, high: Array, codes: Codes = None, product: Product | None = None
 ) -> Range:
     """A value from its float32 ends: overflow is anything, and below the normal numbers lies what may flush.
 
@@ -38,7 +39,7 @@ def bounded(
     low: Array,
     high: Array,
     codes: Codes,
-    product: tuple[Array, Array] | None = None,
+    product: Product | None = None,
     same: bool = False,
 ) -> Range:
     """A value from ends that are settled but may overflow; `same`: low and high were one array before."""
@@ -52,7 +53,7 @@ def bounded(
     return Range(low, high, None, product) if codes is None else anything(low, high, codes, product)
 
 
-def anything(low: Array, high: Array, codes: Array, product: tuple[Array, Array] | None = None) -> Range:
+def anything(low: Array, high: Array, codes: Array, product: Product | None = None) -> Range:
     """A value whose ends are infinite where it has a cause."""
     unknown = codes > 0
     return Range(np.where(unknown, -np.inf, low), np.where(unknown, np.inf, high), codes, product)
@@ -109,7 +110,7 @@ def rounded(context: Context, low: Array, high: Array) -> tuple[Array, Array]:
 def negate(a: Range) -> Range:
     """-a."""
     low = -a.high
-    product = None if a.product is None else (-a.product[1], -a.product[0])
+    product = None if a.product is None else a.product.opposite()
     known = None if a.known is None else (-a.known[1], -a.known[0], a.known[2])
     return Range(low, low if a.is_point else -a.low, a.cause, product, known)
 
@@ -137,13 +138,14 @@ def add(context: Context, a: Range, b: Range) -> Range:
 def _with_fused(low: Array, high: Array, a: Range, b: Range) -> tuple[Array, Array]:
     if a.product is None:
         return low, high
+    least, most = unrounded(a.product)
     # Rounded outwards, since float64 may not hold the exact sum of a product and a float32.
-    fused_low, fused_high = numbers.sum_down(a.product[0], b.low), numbers.sum_up(a.product[1], b.high)
+    fused_low, fused_high = numbers.sum_down(least, b.low), numbers.sum_up(most, b.high)
     return np.minimum(low, fused_low), np.maximum(high, fused_high)
 
 
 def subtract(context: Context, a: Range, b: Range) -> Range:
-    """a - b; 0 where both are one value, if it is rounded on both sides."""
+    """a - b; 0 where both are one value, unless that is a product of which one may be fused."""
     if a is b and a.cause is None:
         zero = np.zeros(1)
         return Range(zero, zero) if a.product is None else _rounding_of_product(context, a)
@@ -153,10 +155,12 @@ def subtract(context: Context, a: Range, b: Range) -> Range:
 
 
 def _rounding_of_product(context: Context, a: Range) -> Range:
-    """A product minus itself, of which a multiply-add may round only one: at most half a step of it."""
-    most = 0.5 * numbers.ulp(np.maximum(np.abs(a.low), np.abs(a.high)))
-    lost = (a.low < SMALLEST) & (a.high > -SMALLEST)  # one side may be flushed
-    most = np.where(lost, np.maximum(most, SMALLEST), most)
+    """A product minus itself, of which a multiply-add may round only one: what rounding it loses at most.
+
+    Flushing one of them loses less than the least normal number, to which `settle` widens such a rounding.
+    """
+    share = 0.5 if context.table.rounding == "nearest" else 1.0
+    most = share * numbers.ulp(np.maximum(np.abs(a.low), np.abs(a.high)))
     return settle(context, -most, most, None)
 
 
@@ -165,41 +169,8 @@ def multiply(context: Context, a: Range, b: Range) -> Range:
     codes = first(a.cause, b.cause)
     if (found := bulk.multiply(context, a, b)) is not None:
         return checked(context, found, codes)
-    low, high = exact_product(a, b)
-    kept = (low, high) if context.table.fused and context.table.rounding == "nearest" else None
-    low, high = rounded(context, low, high)
-    return settle(context, low, high, codes, kept)
-
-
-def exact_product(a: Range, b: Range) -> tuple[Array, Array]:
-    """Ends of the exact products of two intervals."""
-    if a.is_point and b.is_point:
-        exact = a.low * b.low
-        return exact, exact
-    if a is b:
-        far = np.maximum(np.abs(a.low), np.abs(a.high))
-        near = np.maximum(np.maximum(a.low, -a.high), 0.0)
-        return near * near, far * far
-    if a.is_point or (b.reach[0] >= 0.0 and not b.is_point):
-        a, b = b, a
-    if a.reach[0] >= 0.0 and not b.is_point:
-        return _of_positive(a, b)
-    p, q = a.low * b.low, a.high * b.low
-    low, high = np.minimum(p, q), np.maximum(p, q)
-    if b.is_point:
-        return low, high
-    r, s = a.low * b.high, a.high * b.high
-    return np.minimum(low, np.minimum(r, s)), np.maximum(high, np.maximum(r, s))
-
-
-def _of_positive(a: Range, b: Range) -> tuple[Array, Array]:
-    """The same where a is nowhere negative: its upper end goes with what lies farther from 0."""
-    bottom, top, _ = b.reach
-    if bottom >= 0.0:
-        return a.low * b.low, a.high * b.high
-    if top <= 0.0:
-        return a.high * b.low, a.low * b.high
-    return np.minimum(a.low * b.low, a.high * b.low), np.maximum(a.low * b.high, a.high * b.high)
+    low, high = rounded(context, *exact_product(a, b))
+    return settle(context, low, high, codes, kept_product(context.table, a, b))
 
 
 def outside(row: Row, operand: str, x: Range) -> Array | None:

@@ -1,12 +1,12 @@
 """Operations over many lanes by loops that are compiled, where that is wanted; else None.
 
-A result is (low, high, look, product): settled ends, whether a lane needs a closer look, and the ends of the
-exact product where the table fuses. Only speed depends on what is done here.
+A result is (low, high, look, product): settled ends, whether a lane needs a closer look, and the unrounded
+product where that is kept. Only speed depends on what is done here.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,9 +14,10 @@ from codegen.intervals.accuracy import Absolute, Row, Ulp
 from codegen.intervals.compiled import ends, kernels
 from codegen.intervals.context import Context
 from codegen.intervals.numbers import Array
-from codegen.intervals.values import Range
+from codegen.intervals.products import kept_product
+from codegen.intervals.values import Product, Range
 
-Found = tuple[Array, Array, int, "tuple[Array, Array] | None"]
+Found = tuple[Array, Array, int, Product | None]
 _NEVER = {"y": (2.0**-1000, float("inf")), "x": (0.0, float("inf"))}
 """Limits of a row without any: a divisor of 0 is looked at all the same."""
 
@@ -50,31 +51,58 @@ def add(context: Context, a: Range, b: Range) -> Found | None:
     count = _lanes(context, a, b)
     if not count:
         return None
+    if context.table.rounding == "nearest":
+        return _sum_to_nearest(context, count, _Term(a, 1.0), _Term(b, 1.0))
     a, b = _shared_last(a, b)
-    if context.table.rounding == "either":
-        return _run(kernels().add, count, *_ends(a), *_ends(b))
-    products = [x for x in (a, b) if context.table.fused and x.product is not None]
-    if not products:
-        if a.is_point and b.is_point:
-            near = np.empty(count)
-            look = kernels().add_points(_ends(a)[0], _ends(b)[0], near)
-            return None if look else (near, near, 0, None)
-        return _run(kernels().add_nearest, count, *_ends(a), *_ends(b))
-    of, other = (a, b) if products[0] is a else (b, a)
-    assert of.product is not None
-    low, high, look, _ = _run(kernels().add_fused, count, *_ends(of), *_ends(other), *ends(*of.product))
-    if len(products) > 1:
-        assert other.product is not None
-        look = kernels().fuse(low, high, *_ends(of), *ends(*other.product))
-    return low, high, look, None
+    return _run(kernels().add, count, *_ends(a), *_ends(b))
 
 
 def subtract(context: Context, a: Range, b: Range) -> Found | None:
-    """a - b; None as well where it is the sum with -b that has a loop."""
+    """a - b."""
     count = _lanes(context, a, b)
-    if not count or context.table.rounding != "either":
+    if not count:
         return None
+    if context.table.rounding == "nearest":
+        return _sum_to_nearest(context, count, _Term(a, 1.0), _Term(b, -1.0))
     return _run(kernels().subtract, count, *_ends(a), *_ends(b))
+
+
+class _Term(NamedTuple):
+    """A value as it goes into a sum: times 1 or -1."""
+
+    of: Range
+    sign: float
+
+    @property
+    def ends(self) -> tuple[Any, Any, float]:
+        """The number that gives the lower end, the one that gives the upper, and the sign of both."""
+        low, high = _ends(self.of)
+        return (low, high, self.sign) if self.sign > 0.0 else (high, low, self.sign)
+
+    @property
+    def product(self) -> tuple[Any, ...]:
+        """Ends of both factors, whether they are one value, and the sign of their product."""
+        product = self.of.product
+        assert product is not None and product.first is not None and product.second is not None
+        sign = -self.sign if product.is_opposite else self.sign
+        return *ends(*product.first), *ends(*product.second), product.is_square, sign
+
+
+def _sum_to_nearest(context: Context, count: int, a: _Term, b: _Term) -> Found | None:
+    if len(a.of.low) == 1:
+        a, b = b, a
+    products = [x for x in (a, b) if context.table.contracts and x.of.product is not None]
+    if not products:
+        if a.of.is_point and b.of.is_point:
+            near = np.empty(count)
+            look = kernels().add_points(*a.ends[1:], *b.ends[1:], near)
+            return None if look else (near, near, 0, None)
+        return _run(kernels().add_nearest, count, *a.ends, *b.ends)
+    of, other = (a, b) if products[0] is a else (b, a)
+    low, high, look, _ = _run(kernels().add_fused, count, *of.ends, *of.product, *other.ends)
+    if len(products) > 1:
+        look = kernels().fuse(low, high, *other.product, *of.ends)
+    return low, high, look, None
 
 
 def multiply(context: Context, a: Range, b: Range) -> Found | None:
@@ -82,22 +110,20 @@ def multiply(context: Context, a: Range, b: Range) -> Found | None:
     count = _lanes(context, a, b)
     if not count:
         return None
-    if context.table.rounding == "nearest":
-        a, b = _shared_last(a, b)
-        if a.is_point and b.is_point:
-            exact, near = np.empty(count), np.empty(count)
-            look = kernels().multiply_points(_ends(a)[0], _ends(b)[0], exact, near)
-            return None if look else (near, near, 0, (exact, exact) if context.table.fused else None)
-        least, most = np.empty(count), np.empty(count)
-        if a is b:
-            low, high, look, _ = _run(kernels().square_nearest, count, *_ends(a), least, most)
-        else:
-            low, high, look, _ = _run(kernels().multiply_nearest, count, *_ends(a), *_ends(b), least, most)
-        return low, high, look, (least, most) if context.table.fused else None
-    if a is b:
-        return _run(kernels().square, count, *_ends(a))
+    product = kept_product(context.table, a, b)
     a, b = _shared_last(a, b)
-    return _run(kernels().multiply, count, *_ends(a), *_ends(b))
+    if context.table.rounding == "nearest" and a.is_point and b.is_point:
+        near = np.empty(count)
+        look = kernels().multiply_points(_ends(a)[0], _ends(b)[0], near)
+        return None if look else (near, near, 0, product)
+    to_nearest = context.table.rounding == "nearest"
+    if a is b:
+        loop = kernels().square_nearest if to_nearest else kernels().square
+        low, high, look, _ = _run(loop, count, *_ends(a))
+    else:
+        loop = kernels().multiply_nearest if to_nearest else kernels().multiply
+        low, high, look, _ = _run(loop, count, *_ends(a), *_ends(b))
+    return low, high, look, product
 
 
 _ORDERS = {

@@ -12,7 +12,6 @@ from codegen.intervals.arithmetic import (
     add,
     checked,
     divide,
-    exact_product,
     multiply,
     settle,
     settled_within_ulp,
@@ -22,6 +21,7 @@ from codegen.intervals.causes import Codes, first
 from codegen.intervals.context import Context
 from codegen.intervals.elementary import inverse_square_root, square_root
 from codegen.intervals.numbers import Array
+from codegen.intervals.products import exact_product
 from codegen.intervals.values import Range
 
 Ranges = tuple[Range, ...]

@@ -44,6 +44,7 @@ FORMULAS = (
 """The formulas that a row may inherit from; codegen.intervals evaluates them."""
 
 _HEADER = ("specification", "edition", "rounding", "flush", "fused", "settings")
+_OPTIONAL = "as_accurate"
 _SETTINGS = ("rounding", "flush", "fused", "association")
 
 
@@ -54,6 +55,7 @@ class Table:
     rounding  "either": correct rounding may go to either neighbour; "nearest": to nearest, ties to even
     flush     whether inputs and results below 2^-126 may become 0
     fused     whether a * b + c may be evaluated with one rounding
+    as_accurate  whether only what is at least as accurate may be fused: not one side of a * b - a * b
     settings  why each of these, and of the order of sums, is as it is: one citing sentence each
     rows      operation -> what is promised
     """
@@ -66,6 +68,12 @@ class Table:
     fused: bool
     settings: Mapping[str, str]
     rows: Mapping[str, Row]
+    as_accurate: bool = False
+
+    @property
+    def contracts(self) -> bool:
+        """Whether a * b + c may be evaluated with one rounding even where that makes it less accurate."""
+        return self.fused and not self.as_accurate
 
     def row(self, operation: str) -> Row:
         """The row of an operation of the registry."""
@@ -88,12 +96,12 @@ def read_table(name: str, shown: str, text: str) -> Table:
     except tomllib.TOMLDecodeError as e:
         raise UserError(f"{shown}: not valid TOML: {e}") from None
     entries = data.pop("operations", {})
-    _keys(shown, data, _HEADER, _HEADER)
+    _keys(shown, data, (*_HEADER, _OPTIONAL), _HEADER)
     _keys(f"{shown}: settings", data["settings"], _SETTINGS, _SETTINGS)
     if data["rounding"] not in ("either", "nearest"):
         raise UserError(f'{shown}: rounding is "either" or "nearest", not "{data["rounding"]}"')
-    for key in ("flush", "fused"):
-        if not isinstance(data[key], bool):
+    for key in ("flush", "fused", _OPTIONAL):
+        if not isinstance(data.get(key, False), bool):
             raise UserError(f"{shown}: {key} is true or false")
     expected = [*OPERATORS, *BUILTINS, CAST]
     check_names(entries, expected, expected, f"{shown}: unknown operation", f"{shown}: no row for")
@@ -107,6 +115,7 @@ def read_table(name: str, shown: str, text: str) -> Table:
         data["fused"],
         data["settings"],
         rows,
+        data.get(_OPTIONAL, False),
     )
 
 

@@ -8,7 +8,7 @@ twice (x * x, x - x) is seen as such.
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -21,13 +21,33 @@ _serial = itertools.count().__next__
 """Numbers of values: no two values of a process have the same, unless one is the other computed again."""
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class Product:
+    """An unrounded product, by its factors: its ends take as long to write as to compute, and few are used.
+
+    first, second  ends of the factors; where only one is shared by all lanes, it is the second. None where
+                   rounding permits all that a multiply-add may give
+    is_square      whether both are one value
+    is_opposite    whether the product is meant with the other sign
+    """
+
+    first: tuple[Array, Array] | None
+    second: tuple[Array, Array] | None
+    is_square: bool = False
+    is_opposite: bool = False
+
+    def opposite(self) -> Product:
+        """The same with the other sign."""
+        return replace(self, is_opposite=not self.is_opposite)
+
+
 @dataclass(eq=False, slots=True, weakref_slot=True)
 class Range:
     """Floats between two float32 numbers, held in float64.
 
     low, high  ends, both included; the same array for values that are known exactly
     cause      numbers of causes where the value may be anything, NaN included; its ends are then infinite
-    product    for a rounded product, bounds of the unrounded one: a multiply-add may use it
+    product    for a rounded product, the unrounded one: a multiply-add may use it
     known      its reach, see codegen.intervals.numbers.reach, once it was asked for
     number     which value it is
     """
@@ -35,7 +55,7 @@ class Range:
     low: Array
     high: Array
     cause: Codes = None
-    product: tuple[Array, Array] | None = None
+    product: Product | None = None
     known: Reach | None = None
     number: int = field(default_factory=_serial)
 

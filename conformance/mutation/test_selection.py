@@ -191,7 +191,8 @@ def test_mutants_of_a_table(name: str) -> None:
         except UserError:
             continue
         rows = [op for op in table.rows if table.rows[op] != other.rows[op]]
-        settings = [s for s in ("rounding", "flush", "fused") if getattr(table, s) != getattr(other, s)]
+        named = ("rounding", "flush", "fused", "as_accurate")
+        settings = [s for s in named if getattr(table, s) != getattr(other, s)]
         assert len(rows) + len(settings) == 1, mutant
 
 

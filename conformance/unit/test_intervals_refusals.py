@@ -50,6 +50,7 @@ SENTENCES = {
     ),
     "fused = true": ('fused = "yes"', "my.toml: fused is true or false"),
     "flush = true": ("flush = 0", "my.toml: flush is true or false"),
+    "as_accurate = true": ("as_accurate = 1", "my.toml: as_accurate is true or false"),
     "[operations.floor]": ("[operations.flour]", 'my.toml: unknown operation "flour"; did you mean "floor"?'),
     MIN: (
         f"{MIN}\nulps = 3",
@@ -223,6 +224,9 @@ def test_what_a_table_says_of_itself() -> None:
     assert set(table.settings) == {"rounding", "flush", "fused", "association"}
     other = read_table("m", "my.toml", TEXT.replace("flush = true", "flush = false", 1))
     assert not other.flush and other.fused
+    assert other.as_accurate and not other.contracts
+    freely = read_table("m", "my.toml", TEXT.replace("as_accurate = true\n", "", 1))
+    assert not freely.as_accurate and freely.contracts
 
 
 def test_what_a_promise_leaves_out() -> None:

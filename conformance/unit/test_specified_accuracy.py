@@ -120,7 +120,8 @@ def test_settings_are_what_the_specification_says(name: str) -> None:
     table = load_table(name)
     neighbour = {"either": "either neighbour", "nearest": "nearest"}[table.rounding]
     flush, fuse = ("may" if given else "does not" for given in (table.flush, table.fused))
-    assert f"rounds to {neighbour}, {flush} flush, {fuse} fuse" == DATA["settings"][name]
+    what = " what stays as accurate" if table.as_accurate else ""
+    assert f"rounds to {neighbour}, {flush} flush, {fuse} fuse{what}" == DATA["settings"][name]
 
 
 def on_grid(x: Any, toward: int) -> np.float32:
