@@ -126,7 +126,9 @@ class _Run:
     def each_chunk(self, owner: Array, ways: Ways | None) -> Iterator[tuple[Array, _Found]]:
         """Positions in `owner` and what was found there, in order; some chunks are evaluated at a time."""
         at_a_time = threads()
-        size = min(CHUNK, max(LEAST_CHUNK, -(-len(owner) // at_a_time)))
+        # As many for each thread, and all of one size, so that none is left alone at the end.
+        count = at_a_time * max(-(-len(owner) // (at_a_time * CHUNK)), 1)
+        size = max(min(LEAST_CHUNK, CHUNK), -(-len(owner) // count))
         parts = [np.arange(k, min(k + size, len(owner))) for k in range(0, len(owner), size)]
 
         def found(part: Array) -> tuple[_Found, CauseBook]:

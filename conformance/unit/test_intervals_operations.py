@@ -303,6 +303,30 @@ def test_chunks_at_a_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         assert np.array_equal(getattr(one, name), getattr(three, name), equal_nan=True)
 
 
+@pytest.mark.parametrize(
+    ("lanes", "sizes"),
+    [(999, [84] * 11 + [75]), (300, [100] * 3), (301, [51] * 5 + [46]), (60, [40, 20]), (40, [40]), (0, [])],
+)
+def test_chunks_are_divided_evenly(
+    lanes: int, sizes: list[int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Among three threads, none of more than 100 lanes, nor of less than 40 but for the last."""
+    evaluated: list[int] = []
+    evaluate = permit._Run.evaluate
+
+    def noted(self: Any, part: Any, ways: Any) -> Any:
+        evaluated.append(len(part))
+        return evaluate(self, part, ways)
+
+    monkeypatch.setattr(permit._Run, "evaluate", noted)
+    monkeypatch.setattr(permit, "CHUNK", 100)
+    monkeypatch.setattr(permit, "LEAST_CHUNK", 40)
+    monkeypatch.setenv("VAIR_INTERVAL_THREADS", "3")
+    x = np.linspace(0.5, 1.0, lanes, dtype=np.float32)
+    permitted(library_of(tmp_path, "def probe(x: X) -> f32:\n    return x * x\n"), "probe", {"x": x}, "wgsl")
+    assert sorted(evaluated, reverse=True) == sizes
+
+
 def test_the_environment_sets_the_number_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     """By the name that codegen/README.md gives."""
     for told in ("1", "7", "1024"):
