@@ -314,8 +314,10 @@ def absolute(x: Range) -> Range:
     if x.is_point:
         a = np.abs(x.low)
         return Range(a, a, x.cause)
-    low = np.maximum(np.maximum(x.low, -x.high), 0.0)
-    high = np.maximum(-x.low, x.high)
+    low, high = -x.high, -x.low
+    np.maximum(low, x.low, out=low)
+    np.maximum(low, 0.0, out=low)
+    np.maximum(high, x.high, out=high)
     if x.cause is not None:
         low = np.where(x.cause > 0, -np.inf, low)
     return Range(low, high, x.cause)

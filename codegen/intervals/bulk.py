@@ -154,7 +154,7 @@ def divide(context: Context, row: Row, x: Range, y: Range) -> Found | None:
     if not count or row.normal:
         return None
     assert isinstance(row.accuracy, Ulp)
-    limits = *_limits(row, "y"), *_limits(row, "x")
+    limits = *_limits(row, "y"), *_limits(row, "x"), "x" in row.zero
     return _run(kernels().divide, count, *_ends(x), *_ends(y), row.accuracy.ulps, *limits)
 
 

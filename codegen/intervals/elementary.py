@@ -89,15 +89,18 @@ def exponential(context: Context, name: str, x: Range) -> Range:
     low = function(x.low)
     high = low if x.is_point else function(x.high)
     assert isinstance(row.accuracy, Ulp)
-    ulps = _ulps(row.accuracy, x.low, x), _ulps(row.accuracy, x.high, x)
-    return settled_within_ulp(context, low, high, *ulps, x.cause)
+    return settled_within_ulp(context, low, high, *_ulps(row.accuracy, x), x.cause)
 
 
-def _ulps(promise: Ulp, end: Array, x: Range) -> float | Array:
-    """How many ULP at an end of the argument; where only whole ones count, at its larger end."""
+def _ulps(promise: Ulp, x: Range) -> tuple[float | Array, float | Array]:
+    """How many ULP at the ends of the argument; where only whole ones count, at the larger end for both."""
     if promise.whole:
-        return promise.ulps + np.floor(promise.per_abs_x * np.maximum(np.abs(x.low), np.abs(x.high)))
-    return promise.ulps + promise.per_abs_x * np.abs(end) if promise.per_abs_x else promise.ulps
+        larger = promise.ulps + np.floor(promise.per_abs_x * np.maximum(np.abs(x.low), np.abs(x.high)))
+        return larger, larger
+    if not promise.per_abs_x:
+        return promise.ulps, promise.ulps
+    low, high = (promise.ulps + promise.per_abs_x * np.abs(end) for end in (x.low, x.high))
+    return low, high
 
 
 def logarithm(context: Context, name: str, x: Range) -> Range:

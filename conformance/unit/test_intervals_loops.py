@@ -318,6 +318,11 @@ def test_ordinary_lanes_are_settled_by_a_loop() -> None:
         assert settled(bulk.multiply(here, many, many))
         row = table.row("/")
         assert settled(bulk.divide(here, row, many, shared)) == (not row.normal)
+        nothing = Range(np.zeros(LANES), np.zeros(LANES))
+        allowed = "x" in row.zero or not ("x" in row.magnitude or row.normal)
+        assert settled(bulk.divide(here, row, nothing, shared)) == allowed
+        around = Range(np.zeros(LANES), many.high)
+        assert settled(bulk.divide(here, row, around, shared)) == (not ("x" in row.magnitude or row.normal))
         assert settled(bulk.within_ulp(here, many.low, many.high, 1.0, 1.0))
         root, quotient = table.row("inverse_sqrt"), table.row("/")
         assert settled(bulk.inverse_square_root(here, many, root))

@@ -67,15 +67,20 @@ def divide(
     far: float,
     x_near: float,
     x_far: float,
+    x_vanishes: bool,
     low: Array,
     high: Array,
 ) -> int:
-    """x / y within some ULP; looked at where |y| may lie below `near` or above `far`, or |x| likewise."""
-    look = 0
+    """x / y within some ULP; looked at where |y| may lie below `near` or above `far`, or |x| likewise.
+
+    x_vanishes  whether x may be 0 all the same, if it is surely 0
+    """
+    look, anywhere = 0, not x_vanishes
     for i in range(len(low)):
         p, q, u, v = at(x_low, i), at(x_high, i), at(y_low, i), at(y_high, i)
         look |= (max(u, -v) < near) | (max(abs(u), abs(v)) > far)
-        look |= (max(p, -q) < x_near) | (max(abs(p), abs(q)) > x_far)
+        look |= (max(p, -q) < x_near) & (anywhere | (p != 0.0) | (q != 0.0))
+        look |= max(abs(p), abs(q)) > x_far
         negative = v < 0.0
         least, most = (-q if negative else p), (-p if negative else q)
         small, large = (-v if negative else u), (-u if negative else v)
