@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 
 from codegen.errors import UserError
 from codegen.ir import nodes as ir
-from codegen.ir.types import Array, Struct, Type
+from codegen.ir.types import BOOL, Array, Struct, Type
 from codegen.library import Library
 from codegen.passes.placement import branches
 from codegen.passes.ssa.flow import Branch, Carried, Flow, Item, Loop, Merge
@@ -90,7 +90,7 @@ class Inliner:
                 case ir.For():
                     loop, limit = self.limited(s, scope)
                     if _returns(s):
-                        return self.block((*_iterations(loop, limit), *rest), scope)
+                        return self.block((*self.turns(loop, limit, scope), *rest), scope)
                     self.loop(loop, limit, scope)
         return None
 
@@ -165,12 +165,26 @@ class Inliner:
             return replace(s, stop=max(min(s.stop, int(limit.value)), s.start)), limit
         return s, limit
 
+    def turns(self, s: ir.For, limit: ir.Expr | None, scope: Scope) -> tuple[ir.Stmt, ...]:
+        """All turns of a loop that may return: one inside the other where only a run tells how many."""
+        bodies = _iterations(s)
+        if isinstance(limit, ir.Const | None):
+            return tuple(statement for body in bodies for statement in body)
+        self.bound += 1
+        name = f"{s.name}@{self.bound}"
+        scope[name] = limit
+        inner: tuple[ir.Stmt, ...] = ()
+        for i, body in zip(reversed(range(s.start, s.stop)), reversed(bodies), strict=True):
+            goes_on = ir.Binary(BOOL, "<", ir.Const(s.index_type, i), ir.Var(s.index_type, name))
+            inner = (ir.If(goes_on, (*body, *inner), ()),)
+        return inner
+
     def loop(self, s: ir.For, limit: ir.Expr | None, scope: Scope) -> None:
         """A counted loop without a return: unrolled where it is short, else kept."""
         count = max(s.stop - s.start, 0)
         if isinstance(limit, ir.Const | None) and count <= self.unroll:
             self.values.note("unroll", f"{count} iterations over {s.name}", "the bounds are constant")
-            self.block(_iterations(s, limit), scope)
+            self.block(self.turns(s, limit, scope), scope)
             return
         assigned = {a.name for a in ir.statements(s.body) if isinstance(a, ir.Assign)}
         carried = [name for name in scope if name in assigned]
@@ -292,13 +306,10 @@ def _returns(s: ir.Stmt) -> bool:
     return any(isinstance(x, ir.Return) for x in ir.statements((s,)))
 
 
-def _iterations(s: ir.For, limit: ir.Expr | None) -> tuple[ir.Stmt, ...]:
-    """The bodies of all iterations in a row."""
-    if not isinstance(limit, ir.Const | None):
-        raise UserError(f'a loop over "{s.name}" that may return ends at a value that is not known')
+def _iterations(s: ir.For) -> list[tuple[ir.Stmt, ...]]:
+    """The body of each turn."""
     if s.stop - s.start > MOST_UNROLLED:
         raise UserError(
             f"a loop that may return runs {s.stop - s.start} times; at most {MOST_UNROLLED} are unrolled"
         )
-    bodies = ((ir.Let(s.name, ir.Const(s.index_type, i)), *s.body) for i in range(s.start, s.stop))
-    return tuple(statement for body in bodies for statement in body)
+    return [(ir.Let(s.name, ir.Const(s.index_type, i)), *s.body) for i in range(s.start, s.stop)]

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from codegen.errors import UserError
 from codegen.evaluate import evaluate
 from codegen.intervals import permitted
 from codegen.ir import nodes as ir
@@ -84,16 +83,11 @@ def test_python_converts_what_is_no_number(type_: str, tmp_path: Path) -> None:
 @all_parts
 def test_specialised_programs_compute_what_they_did(part: int, tmp_path: Path) -> None:
     library, inputs = library_of_programs(tmp_path, part)
-    tried = 0
     for number, (name, given) in enumerate(inputs.items()):
         random = np.random.default_rng([SEED, part, number])
         choice = Choice(library, name, given, random)
         helpers = [c for c in ir.callees(library.function(name)) if random.integers(0, 2)]
-        try:
-            made = choice.specialised(keep=helpers, unroll=int(random.choice((0, 3, 8))))
-        except UserError as e:
-            assert "that may return ends at a value that is not known" in str(e)
-            continue
+        made = choice.specialised(keep=helpers, unroll=int(random.choice((0, 3, 8))))
         extended = library.with_functions([made.function])
         verify_selection(extended.select([NAME]).functions)
         agreeing = choice.agreeing(made)
@@ -103,5 +97,3 @@ def test_specialised_programs_compute_what_they_did(part: int, tmp_path: Path) -
             got = repeated(got, LANES)
         inside = allowed.contains(got)
         assert inside.all(), f"{choice}: seed {SEED}, lane {int(np.argmin(inside))}"
-        tried += 1
-    assert tried > len(inputs) // 2

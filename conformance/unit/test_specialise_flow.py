@@ -21,6 +21,7 @@ from codegen.ir.domains import Interval
 from codegen.ir.verify import verify
 from codegen.library import load_library
 from codegen.passes.analysis.operations import operations
+from codegen.passes.inline import MOST_UNROLLED
 from codegen.passes.rules.powers import ROWS, error, multiplications
 from codegen.passes.specialise import Specialised, specialise
 from conformance.unit.support.sources import library_of
@@ -215,20 +216,24 @@ RETURNING = (
 )
 
 
-def test_loop_that_may_return_is_unrolled_or_refused(tmp_path: Path) -> None:
-    refused = {
-        "min(n, 4)": 'over "i" that may return ends at a value that is not known',
-        "129": "at most 128",
-    }
-    for k, (end, why) in enumerate(refused.items()):
-        library = library_of(tmp_path / str(k), RETURNING.format(end))
-        with pytest.raises(UserError, match=why):
-            specialise(library, "f")
-    library = library_of(tmp_path / "known", RETURNING.format("min(n, 9)"))
-    found = specialise(library, "f", constants={"n": 4}, new_name="g")
-    inputs = found.impose({"x": np.linspace(-1.0, 4.0, 50).astype(np.float32), "n": 0})
+@pytest.mark.parametrize("turns", [9, MOST_UNROLLED])
+@pytest.mark.parametrize("n", [None, 0, 4])
+def test_loop_that_may_return_is_unrolled(tmp_path: Path, n: int | None, turns: int) -> None:
+    library = library_of(tmp_path, RETURNING.format(f"min(n, {turns})"))
+    known = {} if n is None else {"n": n}
+    found = specialise(library, "f", constants=known, new_name="g")
+    verify(found.function, no_function)
+    assert not any(isinstance(s, ir.For) for s in ir.statements(found.function.body))
+    x = np.repeat(np.linspace(-1.0, 4.0, 50).astype(np.float32), 11)
+    inputs = found.impose({"x": x, "n": np.tile(np.arange(11, dtype=np.uint32), 50)})
     special = evaluate(library.with_functions([found.function]), "g", found.arguments(inputs))
     np.testing.assert_array_equal(special, evaluate(library, "f", inputs))
+
+
+def test_long_loop_that_may_return_is_refused(tmp_path: Path) -> None:
+    library = library_of(tmp_path, RETURNING.format(MOST_UNROLLED + 1))
+    with pytest.raises(UserError, match=f"at most {MOST_UNROLLED}"):
+        specialise(library, "f")
 
 
 def test_kept_call_gives_back_a_struct(tmp_path: Path) -> None:
