@@ -250,3 +250,28 @@ def test_products_with_zeros(text: str, axis: tuple[float, ...], tmp_path: Path)
     most = {"f32": 5 - 2 * zeros, "vec3": 9 - 3 * zeros + (2 if text.startswith("n *") else 0)}
     assert operations(found.function)["arithmetic"] <= most[PRODUCTS[text]]
     assert any(s.name == "axes" for s in found.log)
+
+
+SIDES = {
+    "not p if p else p": "False",
+    "p if p else not p": "True",
+    "q if p else p": "q if p else False",
+    "p if p else q": "True if p else q",
+    "not p if p else q": "False if p else q",
+    "q if p else not p": "q if p else True",
+}
+
+
+@pytest.mark.parametrize(("text", "same"), SIDES.items())
+def test_each_side_of_a_choice_knows_its_condition(text: str, same: str, tmp_path: Path) -> None:
+    bodies = []
+    for k, form in enumerate((text, same)):
+        library = library_of(tmp_path / str(k), f"def f(p: bool, q: bool) -> bool:\n    return {form}\n")
+        found = specialise(library, "f", new_name="g")
+        bodies.append(found.function.body)
+        given = {"p": np.array([True, True, False, False]), "q": np.array([True, False, True, False])}
+        got = evaluate(library.with_functions([found.function]), "g", found.arguments(given))
+        wanted = evaluate(library, "f", given)
+        assert isinstance(got, np.ndarray)
+        assert (np.broadcast_to(got, 4) == wanted).all()
+    assert bodies[0] == bodies[1]

@@ -9,6 +9,7 @@ Not folded: what would overflow, be no number, or lie below the normal numbers, 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ def constants(values: Values, e: ir.Expr) -> Rewrite | None:
     if not isinstance(e, ir.Unary | ir.Binary | ir.Builtin | ir.Convert | ir.Select):
         return None
     if isinstance(e, ir.Select):
-        return _decided(e)
+        return _decided(e) or _settled(values, e)
     columns: list[Any] = []
     for c in ir.children(e):
         operand = constant_components(c)
@@ -58,6 +59,22 @@ def _decided(e: ir.Select) -> Rewrite | None:
         chosen = e.if_true if e.condition.value else e.if_false
         return Rewrite(chosen, NAME, f"the condition is {str(e.condition.value).lower()}")
     return None
+
+
+def _settled(values: Values, e: ir.Select) -> Rewrite | None:
+    """Each side knows the condition: c ? !c : c is false."""
+    if e.type != BOOL:
+        return None
+    sides: list[ir.Expr] = []
+    for side, holds in ((e.if_true, True), (e.if_false, False)):
+        denied = isinstance(side, ir.Unary) and side.operand is e.condition
+        known = denied or side is e.condition
+        sides.append(values.build(ir.Const(BOOL, holds != denied)) if known else side)
+    a, b = sides
+    if a is e.if_true and b is e.if_false:
+        return None
+    chosen = a if a is b else values.build(replace(e, if_true=a, if_false=b))
+    return Rewrite(chosen, NAME, "each side knows the condition")
 
 
 def _column(type_: Type, numbers: tuple[float | int | bool, ...]) -> Any:
