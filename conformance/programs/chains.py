@@ -48,6 +48,12 @@ def chained(function: ir.Function, constants_first: bool) -> ir.Function:
     return replace(function, body=ir.map_body(body, partial(_together, constants_first, known)))
 
 
+def beyond_choices(function: ir.Function) -> ir.Function:
+    """A straightened function with (c ? a : b) + x as c ? a + x : b + x."""
+    body, known = scalars(function)
+    return replace(function, body=ir.map_body(body, partial(_beyond_choices, known)))
+
+
 def scalars(function: ir.Function) -> tuple[tuple[ir.Stmt, ...], Known]:
     """A straightened function's statements, component by component, and the values of its locals."""
     body = ir.map_body(ir.map_body(componentwise(function).body, without_cross), _settled)
@@ -68,6 +74,20 @@ def _settled(e: ir.Expr) -> ir.Expr:
             return ir.Unary(F32, "negate", x)
         case ir.Binary(op="*", type=type_, left=ir.Const(value=-1.0), right=x) if type_ == F32:
             return ir.Unary(F32, "negate", x)
+    return e
+
+
+def _beyond_choices(known: Known, e: ir.Expr) -> ir.Expr:
+    if not adds(e):
+        return e
+    assert isinstance(e, ir.Binary)
+    left, right = meaning(known, e.left), meaning(known, e.right)
+    if isinstance(left, ir.Select):
+        sides = [replace(e, left=side) for side in (left.if_true, left.if_false)]
+        return ir.Select(F32, left.condition, *sides)
+    if isinstance(right, ir.Select):
+        sides = [replace(e, right=side) for side in (right.if_true, right.if_false)]
+        return ir.Select(F32, right.condition, *sides)
     return e
 
 
@@ -144,6 +164,10 @@ def _component(known: Known, e: ir.Expr, k: int) -> ir.Expr:
             return _component(known, known[e.name], k)
         case ir.Swizzle():
             return _component(known, e.value, "xyzw".index(e.components[k]))
+        case ir.Select():
+            a, b = _component(known, e.if_true, k), _component(known, e.if_false, k)
+            same = meaning(known, a) == meaning(known, b)
+            return a if same else ir.Select(e.type.element, e.condition, a, b)
         case ir.Construct(args=(only,)) if not isinstance(only.type, Vector):
             return only
         case ir.Construct():

@@ -1,8 +1,8 @@
 """Sums and products with their constant moved inwards, as compilers do it.
 
 Mesa 22.3.6 turns (a + b) + c with a constant c into (a + c) + b, and the same for products; it does so across
-locals and the turns of a loop (conformance.programs.chains), reorders sums and takes out factors that their
-terms share (conformance.programs.gathered), and factors or distributes interpolations for some drivers
+locals, choices and the turns of a loop (conformance.programs.chains), reorders sums, takes out factors that
+their terms share (conformance.programs.gathered), and factors or distributes interpolations for some drivers
 (conformance.programs.interpolated). WGSL (Reassociation and Fusion: any reordering whose answer is the same
 if computed exactly), Vulkan (distributivity included) and GLSL without `precise` allow rearrangement; the
 accuracy tables judge expressions as written. A result that only this explains is counted as rearranged, and
@@ -23,7 +23,7 @@ from codegen.intervals.accuracy import Inherited
 from codegen.ir import nodes as ir
 from codegen.ir.types import Vector
 from codegen.library import Library
-from conformance.programs.chains import chained, straightened
+from conformance.programs.chains import beyond_choices, chained, straightened
 from conformance.programs.gathered import gathered, reordered
 from conformance.programs.interpolated import interpolated, weighted
 
@@ -66,9 +66,11 @@ def _forms(
     arguments = straight.arguments(inputs) if straight.parameters else {}
     for first in (False, True):
         yield library.with_functions([chained(straight.function, first)]), arguments
+    yield library.with_functions([chained(beyond_choices(straight.function), True)]), arguments
     if in_any_order:
         for made in gathered(straight.function):
             yield library.with_functions([made]), arguments
+            yield library.with_functions([chained(made, True)]), arguments
 
 
 def _components_inside(allowed: Permitted, value: Value) -> Array:

@@ -150,6 +150,12 @@ SHARED: dict[str, tuple[str, list[int], Callable[..., Any]]] = {
         [0x3F36B3A5, 0xC00BEF24],
         lambda a, b: F(5.0) * (a + b),
     ),
+    # What is left of a product, with another constant: random program 9697 of seed 2.
+    "product": (
+        "-0.1 * dot(vec4(a, 0.5, a, b), vec4(c))",
+        [0x40500000, 0x40300000, 0xC0500000],
+        lambda a, b, c: (F(-0.1) * c) * ((a + F(0.5)) + (a + b)),
+    ),
     "beside": (
         "max((a + b) + (c + d), -100.0) + d * d + 1.0",
         [0xC066EDFC, 0x3FD7C6AC, 0xBFB55D36, 0x3F81D4C1],
@@ -179,6 +185,43 @@ def test_sums_with_shared_factors_are_explained(name: str, tmp_path: Path) -> No
         for wrong in (got - steps, got + steps):
             assert not explained(library, "probe", inputs, "", wrong, table).any(), table
     assert not explained(library, "probe", inputs, "", got, "opencl").any()
+
+
+SEEN_THROUGH = {
+    "a choice": """def probe(a: X, b: V, up: bool) -> f32:
+    s = b + vec3(a)
+    if up:
+        s = s.zxz
+    return s.z - -1.0
+""",  # random program 23502 of seed 2
+    "a choice of two sums": """def probe(a: X, b: V, up: bool) -> f32:
+    s = b + vec3(a)
+    if not up:
+        s = vec3(a)
+    return s.z - -1.0
+""",
+    "a loop with an end that a run tells": """def probe(a: X, b: V, n: i32) -> f32:
+    for i in range(min(n, 4)):
+        if b.z * f32(i) > 0.5:
+            return a + b.z + 1.0
+    return (a - a) / (abs(b.z) + 0.125)
+""",  # 1529
+}
+
+
+@pytest.mark.parametrize("name", SEEN_THROUGH)
+def test_sums_are_seen_through(name: str, tmp_path: Path) -> None:
+    library = library_of(tmp_path, SEEN_THROUGH[name])
+    same = np.array([0x3E21ECFC], np.uint32).view(np.float32)
+    beside = {"up": np.array([True])} if "choice" in name else {"n": np.array([7], np.int32)}
+    if "n" in beside:
+        same = same + F(0.25)
+    inputs = {"a": same, "b": np.array([[0.0, 0.0, same[0]]], np.float32), **beside}
+    got = same + (same + F(1.0))
+    for table in ("wgsl", "glsl"):
+        assert not permitted(library, "probe", inputs, table).contains(got).any(), table
+        assert explained(library, "probe", inputs, "", got, table).all(), table
+        assert not explained(library, "probe", inputs, "", got + 16 * np.spacing(got), table).any(), table
 
 
 def test_multiples_of_one_value_are_gathered(tmp_path: Path) -> None:
