@@ -27,7 +27,7 @@ def settle(
     found = numbers.reach(low, high)
     if numbers.usual(found):
         if codes is not None:
-            return anything(low, high, codes, product)
+            return bounded(context, low, high, codes, product)
         return Range(low, high, None, product, found)
     same = low is high
     low, high = _below_normal(context, low, high)
@@ -43,6 +43,10 @@ def bounded(
     same: bool = False,
 ) -> Range:
     """A value from ends that are settled but may overflow; `same`: low and high were one array before."""
+    if codes is not None:
+        found = bulk.unknown(context, low, high, codes)
+        if found is not None and not found[2]:
+            return Range(found[0], found[1], codes, product)
     over = ~((low >= -LARGEST) & (high <= LARGEST))
     if over.any():
         fresh = over if codes is None else over & (codes == 0)

@@ -148,6 +148,14 @@ def compare(context: Context, op: str, a: Range, b: Range) -> tuple[Array, Array
     return (false, true, undecided) if opposite else (true, false, undecided)
 
 
+def unknown(context: Context, low: Array, high: Array, codes: Array) -> Found | None:
+    """Ends that are infinite where there is a cause; looked at where they may overflow without one."""
+    count = max(len(low), len(codes))
+    if not context.loops or count == 1:
+        return None
+    return _run(kernels().unknown, count, *ends(low, high), codes if len(codes) > 1 else int(codes[0]))
+
+
 def divide(context: Context, row: Row, x: Range, y: Range) -> Found | None:
     """x / y; looked at where the row promises nothing as well."""
     count = _lanes(context, x, y)

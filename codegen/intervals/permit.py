@@ -24,6 +24,8 @@ from codegen.intervals.values import Single, Truth, Value, Whole
 from codegen.ir.types import BOOL, F32, I32, Scalar, Struct, Type, Vector, leaves
 from codegen.library import Library
 
+Lanes = Array | slice
+"""Some of all lanes, by their numbers or in a row."""
 CHUNK = 65536
 """Lanes evaluated together at most: many, since threads wait for each other between operations."""
 LEAST_CHUNK = 16384
@@ -114,7 +116,7 @@ class _Run:
         self.library.select([self.function.name])  # all that is called, before threads ask for it
         forks = np.full(self.count, -1, np.int32)
         widths = np.zeros(self.count, np.int32)
-        for part, found in self.each_chunk(np.arange(self.count), None):
+        for part, found in self.each_chunk(self.count, None, None):
             self.store(part, found)
             forks[part], widths[part] = found.first_fork, found.width
         if follow_forks and (forks >= 0).any():
@@ -123,18 +125,20 @@ class _Run:
         causes = tuple(self.book.causes)
         return Permitted(_build(shape, self.low), _build(shape, self.high), self.codes, causes)
 
-    def each_chunk(self, owner: Array, ways: Ways | None) -> Iterator[tuple[Array, _Found]]:
-        """Positions in `owner` and what was found there, in order; some chunks are evaluated at a time."""
+    def each_chunk(
+        self, total: int, owner: Array | None, ways: Ways | None
+    ) -> Iterator[tuple[slice, _Found]]:
+        """Positions in `owner`, or lanes without it, and what was found there, in order; some at a time."""
         at_a_time = threads()
         # As many for each thread, and all of one size, so that none is left alone at the end.
-        count = at_a_time * max(-(-len(owner) // (at_a_time * CHUNK)), 1)
-        size = max(min(LEAST_CHUNK, CHUNK), -(-len(owner) // count))
-        parts = [np.arange(k, min(k + size, len(owner))) for k in range(0, len(owner), size)]
+        count = at_a_time * max(-(-total // (at_a_time * CHUNK)), 1)
+        size = max(min(LEAST_CHUNK, CHUNK), -(-total // count))
+        parts = [slice(k, min(k + size, total)) for k in range(0, total, size)]
 
-        def found(part: Array) -> tuple[_Found, CauseBook]:
+        def found(part: slice) -> tuple[_Found, CauseBook]:
             chosen = None if ways is None else Ways(ways.forks[part], ways.ways[part])
             with np.errstate(all="ignore"):
-                return self.evaluate(owner[part], chosen)
+                return self.evaluate(part if owner is None else owner[part], part.stop - part.start, chosen)
 
         if len(parts) < 2 or at_a_time < 2:
             results = map(found, parts)
@@ -155,9 +159,9 @@ class _Run:
         numbers = np.array([0, *(self.book.code(cause) for cause in book.causes)], np.int16)
         return replace(found, codes=numbers[found.codes])
 
-    def evaluate(self, lanes: Array, ways: Ways | None) -> tuple[_Found, CauseBook]:
+    def evaluate(self, lanes: Lanes, count: int, ways: Ways | None) -> tuple[_Found, CauseBook]:
         book = CauseBook()
-        context = Context(self.table, book, len(lanes), ways)
+        context = Context(self.table, book, count, ways)
         context.function, context.line = self.function.name, self.function.place.line
         context.operation = "input"
         arguments = {
@@ -165,15 +169,15 @@ class _Run:
         }
         value = Frame(self.library, context, self.function, arguments).run()
         singles = list(_singles(value))
-        low = [np.broadcast_to(_low(s), len(lanes)) for s in singles]
-        high = [np.broadcast_to(_high(s), len(lanes)) for s in singles]
-        codes = np.zeros(len(lanes), np.int16)
+        low = [np.broadcast_to(_low(s), count) for s in singles]
+        high = [np.broadcast_to(_high(s), count) for s in singles]
+        codes = np.zeros(count, np.int16)
         for s in singles:
             if not isinstance(s, Truth) and s.cause is not None:
                 codes = np.where(codes > 0, codes, s.cause)
         return _Found(low, high, codes, context.first_fork, context.width), book
 
-    def store(self, lanes: Array, found: _Found) -> None:
+    def store(self, lanes: Lanes, found: _Found) -> None:
         """Put results in, one for each lane."""
         for k, (low, high) in enumerate(zip(found.low, found.high, strict=True)):
             self.low[k][lanes], self.high[k][lanes] = low, high
@@ -212,7 +216,7 @@ class _Run:
             path = path.then(index, fork[index], _counted(width[kept]).astype(np.int32))
             owner = owner[index]
             open_fork, open_width = np.empty(len(owner), np.int32), np.empty(len(owner), np.int32)
-            for part, found in self.each_chunk(owner, path):
+            for part, found in self.each_chunk(len(owner), owner, path):
                 open_fork[part], open_width[part] = found.first_fork, found.width
                 done = (found.first_fork < 0) | (depth == DEPTH - 1)
                 # The first finished way of a lane replaces its hull, later ones join it.
@@ -256,7 +260,7 @@ def _dtype(kind: Scalar) -> type[np.generic]:
     return np.bool_ if kind == BOOL else np.float64 if kind == F32 else np.int64
 
 
-def _value(context: Context, type_: Type, given: Arrays, lanes: Array) -> Value:
+def _value(context: Context, type_: Type, given: Arrays, lanes: Lanes) -> Value:
     if isinstance(type_, Struct):
         assert isinstance(given, dict)
         return {f.name: _value(context, f.type, given[f.name], lanes) for f in type_.fields}

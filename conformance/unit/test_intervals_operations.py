@@ -314,9 +314,9 @@ def test_chunks_are_divided_evenly(
     evaluated: list[int] = []
     evaluate = permit._Run.evaluate
 
-    def noted(self: Any, part: Any, ways: Any) -> Any:
-        evaluated.append(len(part))
-        return evaluate(self, part, ways)
+    def noted(self: Any, part: Any, count: int, ways: Any) -> Any:
+        evaluated.append(count)
+        return evaluate(self, part, count, ways)
 
     monkeypatch.setattr(permit._Run, "evaluate", noted)
     monkeypatch.setattr(permit, "CHUNK", 100)

@@ -18,7 +18,7 @@ from codegen.intervals.kernels.accuracy import (
     square_root,
     within_ulp,
 )
-from codegen.intervals.kernels.decisions import at_most, choose, equal, less
+from codegen.intervals.kernels.decisions import at_most, choose, equal, less, unknown
 from codegen.intervals.kernels.either import add, multiply, square, subtract, sum_of_three
 from codegen.intervals.kernels.nearest import (
     add_fused,
@@ -52,5 +52,6 @@ __all__ = [
     "square_root",
     "subtract",
     "sum_of_three",
+    "unknown",
     "within_ulp",
 ]

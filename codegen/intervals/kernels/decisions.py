@@ -1,11 +1,12 @@
-"""Comparisons, and the choice between two values."""
+"""Comparisons, the choice between two values, and ends of what is not known."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from codegen.intervals.lanes import at, compiled
-from codegen.intervals.numbers import Array
+from codegen.intervals.numbers import LARGEST, Array
 
 Ends = Any
 
@@ -54,3 +55,16 @@ def equal(a_low: Ends, a_high: Ends, b_low: Ends, b_high: Ends, true: Array, fal
         true[i], false[i] = t, f
         undecided |= t & f
     return undecided
+
+
+@compiled
+def unknown(a_low: Ends, a_high: Ends, codes: Any, low: Array, high: Array) -> int:
+    """Ends that are infinite where there is a cause; looked at where they may overflow without one."""
+    look = 0
+    for i in range(len(low)):
+        x, y, known = at(a_low, i), at(a_high, i), at(codes, i) == 0
+        fits = (x >= -LARGEST) & (y <= LARGEST)
+        low[i] = x if known & fits else -math.inf
+        high[i] = y if known & fits else math.inf
+        look |= known & (not fits)
+    return look
