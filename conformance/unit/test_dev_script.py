@@ -225,6 +225,34 @@ def test_tests_run_where_npm_cannot_fetch(set_up: Path) -> None:
     assert "Tests:" in done.stdout
 
 
+@pytest.mark.parametrize(
+    ("day", "night", "failed"),
+    [
+        (0, 0, ""),
+        (1, 0, "tests (not nightly)"),
+        (0, 1, "tests (nightly)"),
+        (5, 0, ""),
+        (0, 5, ""),
+        (5, 5, "tests (none was selected)"),
+    ],
+)
+def test_what_takes_long_has_processes_of_its_own(set_up: Path, day: int, night: int, failed: str) -> None:
+    """Either part may hold none of the tests that were selected, not both; 5 is pytest's status for none."""
+    calls = set_up / "calls"
+    parts = f'*"-m nightly"*) exit {night} ;; *"-m pytest"*) exit {day} ;;'
+    provide(
+        set_up / ".venv/bin/python",
+        f'case "$1" in -ISc) echo key ;; esac\necho "$*" >> "{calls}"\ncase "$*" in {parts} esac',
+    )
+    done = dev(set_up, "test", "--nightly", "-k", "some", VAIR_SYSTEM="skip")
+    assert done.returncode == (1 if failed else 0), done.stdout + done.stderr
+    assert f"Failed: {failed}" in done.stdout + done.stderr if failed else "Failed" not in done.stdout
+    asked = [
+        line.partition("worksteal ")[2] for line in calls.read_text().splitlines() if "-m pytest" in line
+    ]
+    assert asked == ["-m not nightly -k some", "-m nightly -k some"]
+
+
 def test_report_shows_the_scenes_that_are_specialised(set_up: Path) -> None:
     """Those of the folder that examples/scenes/README.md names, and no scenes that are pictures."""
     scenes = "examples/scenes/specialised"
