@@ -73,6 +73,7 @@ def test_random_programs_are_right(part: int, runtimes: list[Runtime]) -> None:
 
 
 @pytest.mark.nightly
+@pytest.mark.spreads
 @pytest.mark.timeout(6 * 3600)
 def test_many_random_programs_are_right(runtimes: list[Runtime]) -> None:
     """On two processes, since a compiler that panics ends the one in which it runs."""

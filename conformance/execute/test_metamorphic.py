@@ -129,6 +129,7 @@ def test_a_job_that_is_not_done_is_told() -> None:
 
 
 @pytest.mark.nightly
+@pytest.mark.spreads
 @pytest.mark.timeout(2 * 3600)
 def test_all_related_pairs_agree() -> None:
     """On two processes."""

@@ -29,6 +29,7 @@ def test_short_sweep_keeps_the_bounds(target: str) -> None:
 
 
 @pytest.mark.nightly
+@pytest.mark.spreads
 @pytest.mark.timeout(0)
 def test_every_number_keeps_the_bounds() -> None:
     """All numbers of all functions, on two processes and every target whose driver is here.

@@ -226,31 +226,34 @@ def test_tests_run_where_npm_cannot_fetch(set_up: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("day", "night", "failed"),
+    ("codes", "failed"),
     [
-        (0, 0, ""),
-        (1, 0, "tests (not nightly)"),
-        (0, 1, "tests (nightly)"),
-        (5, 0, ""),
-        (0, 5, ""),
-        (5, 5, "tests (none was selected)"),
+        ((0, 0, 0), ""),
+        ((1, 0, 0), "tests (not nightly)"),
+        ((0, 1, 0), "tests (nightly and not spreads)"),
+        ((0, 0, 1), "tests (nightly and spreads)"),
+        ((5, 0, 5), ""),
+        ((0, 5, 5), ""),
+        ((5, 5, 5), "tests (none was selected)"),
     ],
 )
-def test_what_takes_long_has_processes_of_its_own(set_up: Path, day: int, night: int, failed: str) -> None:
-    """Either part may hold none of the tests that were selected, not both; 5 is pytest's status for none."""
+def test_the_night_has_three_parts(set_up: Path, codes: tuple[int, int, int], failed: str) -> None:
+    """Some may hold none of the tests that were selected, not all; 5 is pytest's status for none."""
     calls = set_up / "calls"
-    parts = f'*"-m nightly"*) exit {night} ;; *"-m pytest"*) exit {day} ;;'
+    parts = ("not nightly", "nightly and not spreads", "nightly and spreads")
+    ends = " ".join(f'*"-m {part} "*) exit {code} ;;' for part, code in zip(parts, codes, strict=True))
     provide(
         set_up / ".venv/bin/python",
-        f'case "$1" in -ISc) echo key ;; esac\necho "$*" >> "{calls}"\ncase "$*" in {parts} esac',
+        f'case "$1" in -ISc) echo key ;; esac\necho "$*" >> "{calls}"\ncase "$*" in {ends} esac',
     )
     done = dev(set_up, "test", "--nightly", "-k", "some", VAIR_SYSTEM="skip")
     assert done.returncode == (1 if failed else 0), done.stdout + done.stderr
     assert f"Failed: {failed}" in done.stdout + done.stderr if failed else "Failed" not in done.stdout
-    asked = [
-        line.partition("worksteal ")[2] for line in calls.read_text().splitlines() if "-m pytest" in line
+    asked = [line for line in calls.read_text().splitlines() if "worksteal" in line]
+    assert asked == [
+        f"-m pytest -n {count} --dist worksteal -m {part} -k some"
+        for count, part in zip((2, 2, 0), parts, strict=True)
     ]
-    assert asked == ["-m not nightly -k some", "-m nightly -k some"]
 
 
 def test_report_shows_the_scenes_that_are_specialised(set_up: Path) -> None:
