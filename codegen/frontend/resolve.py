@@ -157,22 +157,16 @@ class Resolver:
 
     def constant(self, file: SourceFile, name: str) -> constants.Number | None:
         """The value of a named constant as seen in `file`; None where the name is not a constant."""
-        found = self.find(file, name)
-        if found is None:
+        where, original = self.find(file, name) or (file, name)
+        if original not in where.values:
             return None
-        where, original = found
-        value = where.values.get(original)
-        if value is None:
-            return None
+        value = where.values[original]
         with self.defining(where, original, value):
             return constants.fold(value, lambda n: self.constant(where, n))
 
     def constant_type(self, file: SourceFile, name: str) -> Type | None:
         """The type that a constant's annotation states; None without one."""
-        found = self.find(file, name)
-        if found is None:
-            return None
-        where, original = found
+        where, original = self.find(file, name) or (file, name)
         node = where.annotations.get(original)
         return stated.read(self, where, node, node)[0] if node is not None else None
 
@@ -181,14 +175,22 @@ class Resolver:
         if name not in self._structs:
             node = file.structs[name]
             names.check(name, "struct", file.place(node))
-            if [d.id for d in node.decorator_list if isinstance(d, ast.Name)] != ["struct"]:
-                raise file.error(node, "a class in a shader source is a struct: decorate it with @struct")
+            match node.decorator_list:
+                case [ast.Name(id="struct")]:
+                    pass
+                case _:
+                    sentence = (
+                        "a class in a shader source is a struct: decorate it with @struct, and nothing else"
+                    )
+                    raise file.error(node, sentence)
+            if node.bases or node.keywords:
+                raise file.error([*node.bases, *node.keywords][0], "a struct is made of no other class")
             doc = self._doc(file, node)
             fields: list[Field] = []
             for item in node.body:
                 match item:
                     case ast.Expr(value=ast.Constant(value=str())):
-                        continue
+                        pass
                     case ast.AnnAssign(target=ast.Name(id=field), annotation=annotation, value=None):
                         names.check(field, "field", file.place(item))
                         if any(f.name == field for f in fields):
@@ -307,8 +309,8 @@ class Resolver:
 
     @staticmethod
     def _doc(file: SourceFile, node: ast.FunctionDef | ast.ClassDef) -> Doc:
-        text = ast.get_docstring(node, clean=False)
-        if text is not None and "\\" in text:
+        text = ast.get_docstring(node) or ""
+        if "\\" in text:
             raise file.error(
                 node.body[0], "a backslash in a docstring would continue the emitted comment line"
             )
