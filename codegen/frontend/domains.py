@@ -73,7 +73,7 @@ def _check_ends(file: SourceFile, node: ast.expr, type_: Type, domain: Interval 
         return
     if domain.scale not in SCALES:
         raise file.error(node, f'unknown scale "{domain.scale}"{nearest(domain.scale, SCALES)}')
-    if not 0.0 <= domain.least <= max(abs(low), abs(high)):
+    if not 0.0 <= domain.least <= max(-low, high):
         raise file.error(node, '"least" of Interval is a magnitude, from 0 to the larger end')
 
 
@@ -107,13 +107,12 @@ def _value(
         if is_text:
             return str(ast.literal_eval(node))
         raise file.error(node, f'"{place.name}" of {name} is a text in quotation marks; write {_shape(name)}')
-    value = None if is_text else constants.fold(node, lambda n: resolver.constant(file, n))
-    if is_text or isinstance(value, bool):
-        found = "a text" if is_text else value
-        raise file.error(node, f'"{place.name}" of {name} is a number, not {found}; write {_shape(name)}')
+    value = "a text" if is_text else constants.fold(node, lambda n: resolver.constant(file, n))
+    if isinstance(value, str | bool):
+        raise file.error(node, f'"{place.name}" of {name} is a number, not {value}; write {_shape(name)}')
     if value is None:
         raise file.error(node, "a domain is stated in numbers")
     try:
         return float(value)
-    except OverflowError:  # a whole number beyond double precision
-        return math.inf if value > 0 else -math.inf
+    except OverflowError:  # a whole number beyond double precision: no end is infinite
+        return math.inf

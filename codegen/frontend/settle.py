@@ -41,16 +41,12 @@ def value(e: ir.Expr) -> Parts | None:
     """The components of a constant expression, floats in double precision; None for any other."""
     if isinstance(e, ir.Const):
         return (e.value,)
-    if isinstance(e, ir.Call | ir.Member):
-        return None
     known: list[Parts] = []
     for child in ir.children(e):
         part = value(child)
         if part is None:
             return None
         known.append(part)
-    if not known:
-        return None
     try:
         return _components(e, known)
     except (ValueError, ZeroDivisionError, OverflowError):

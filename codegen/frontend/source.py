@@ -59,6 +59,8 @@ WORDS = {
     "JoinedStr": "a text",
     "Call": "a call of anything but a plain name",
     "ListComp": "a comprehension",
+    "SetComp": "a comprehension",
+    "DictComp": "a comprehension",
     "GeneratorExp": "a comprehension",
     "UnaryOp": "a plus sign before an operand",
     "Subscript": "an index; components are written v.x",
