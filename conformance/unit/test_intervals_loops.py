@@ -324,6 +324,11 @@ def test_ordinary_lanes_are_settled_by_a_loop() -> None:
         around = Range(np.zeros(LANES), many.high)
         assert settled(bulk.divide(here, row, around, shared)) == (not ("x" in row.magnitude or row.normal))
         assert settled(bulk.within_ulp(here, many.low, many.high, 1.0, 1.0))
+        causes = np.arange(LANES) % 2
+        assert settled(bulk.unknown(here, many.low, many.high, causes))
+        assert settled(bulk.unknown(here, many.low[:1], many.high[:1], causes))
+        assert settled(bulk.unknown(here, many.low, many.high, causes[1:2]))
+        assert bulk.unknown(here, many.low[:1], many.high[:1], causes[:1]) is None
         root, quotient = table.row("inverse_sqrt"), table.row("/")
         assert settled(bulk.inverse_square_root(here, many, root))
         assert settled(bulk.square_root(here, many, root, quotient)) == ("x" not in quotient.magnitude)
