@@ -18,7 +18,7 @@ import pytest
 from codegen.evaluate import evaluate
 from codegen.intervals import TABLES, permitted
 from codegen.ir import nodes as ir
-from codegen.ir.domains import Edges, Interval, Unit
+from codegen.ir.domains import Edges, Interval, Length, Unit
 from codegen.ir.types import BOOL, F32, I32, TEXTURE, VEC2, VEC3, VEC4, Field, Struct, array_of
 from codegen.library import load_library
 from codegen.passes.analysis.norms import Lengths
@@ -177,6 +177,15 @@ def test_directions_know_their_length() -> None:
         1.0, abs=tolerance("range_of_cosines")
     )
     assert math.isinf(lengths.of(values.build(ir.Construct(VEC3, (dot,))))[1])
+
+
+def test_lengths_say_nothing_of_what_may_overflow() -> None:
+    """Lengths up to 1e30 bound a product by 1e60, which single precision does not reach."""
+    values = Values(parameters={"v": ir.Parameter("v", VEC3, Length(1e-30, 1e30))})
+    v = values.intern(ir.Var(VEC3, "v"))
+    ranges = Ranges(values)
+    assert not ranges.bounds(values.build(ir.Builtin(F32, "dot", (v, v))))[0].finite
+    assert ranges.bounds(v)[0].finite
 
 
 def test_fact_narrows_either_order_and_nothing_else() -> None:
