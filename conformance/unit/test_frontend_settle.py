@@ -16,6 +16,7 @@ from codegen.frontend.settle import LARGEST, NoValueError, settle, value
 from codegen.ir import nodes as ir
 from codegen.ir.types import BOOL, F32, I32, U32, UVEC2, VEC2, VEC3, VEC4, Field, Struct, Type, array_of
 from codegen.ops import BUILTINS
+from conformance.unit.support.tolerances import tolerance
 
 Given = float | int | tuple[float, ...]
 ONE_IN_32 = 2**32
@@ -220,7 +221,7 @@ def test_a_constant_has_its_value(case: str) -> None:
     e, parts = VALUES[case]
     found = value(e)
     assert found is not None
-    assert found == pytest.approx(parts, rel=1e-15, abs=0.0)
+    assert found == pytest.approx(parts, rel=tolerance("rounded"), abs=0.0)
     assert [type(x) for x in found] == [type(x) for x in parts]
     settle(e)
 
