@@ -53,7 +53,7 @@ def struct_comment(s: ir.StructDef, rename: Callable[[str], str]) -> list[str]:
 
 
 def _comment(summary: str, entries: dict[str, str]) -> list[str]:
-    width = max((len(key) for key in entries), default=0)
+    width = max(map(len, entries))
     lines = wrap.comment(summary, "// ", "// ")
     for key, text in entries.items():
         lines += wrap.comment(text, f"//   {key.ljust(width)}  ", f"//   {' ' * width}  ")

@@ -10,7 +10,6 @@ from codegen.ir.domains import Domain, Interval, Length
 _NUMBER = r"(-?\d[\d.]*(?:e-?\d+)?)"
 _INTERVAL = re.compile(rf"\[{_NUMBER}, {_NUMBER}([\])])|\b{_NUMBER} to {_NUMBER}(?!\w)")
 """[0, 1e5], [0, 1), 0 to 1."""
-_LARGEST = 3.4e38
 
 
 def described(text: str, domain: Domain | None) -> str:
@@ -36,9 +35,11 @@ def _ends(low: str, high: str, closing: str, first: str, last: str) -> tuple[flo
 
 
 def _single(x: float) -> float:
-    if abs(x) > _LARGEST:
+    """The nearest float32; beyond all of them the number itself."""
+    try:
+        rounded: float = struct.unpack("f", struct.pack("f", x))[0]
+    except OverflowError:
         return x
-    rounded: float = struct.unpack("f", struct.pack("f", x))[0]
     return rounded
 
 

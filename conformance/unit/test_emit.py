@@ -176,6 +176,11 @@ def test_every_function_documents_its_parameters_result_and_source(dialect: Dial
     assert not missing
 
 
+ROUNDED = 0.10000000149011612
+"""0.1 in single precision."""
+WHOLE = Interval(-3.4028234663852886e38, 3.4028234663852886e38)
+
+
 @pytest.mark.parametrize(
     ("text", "domain", "shown"),
     [
@@ -190,6 +195,12 @@ def test_every_function_documents_its_parameters_result_and_source(dialect: Dial
         ("vector, of length 1e-6 to 1e6", Length(1e-6, 1e6), "vector, of length 1e-6 to 1e6"),
         ("share, 0 to 100", Interval(0.0, 10.0), "share, 0 to 100; in [0, 10]"),
         ("beyond [-1e39, 0)", Interval(0.0, 1.0), "beyond [-1e39, 0); in [0, 1]"),
+        ("below, in [-1e39, 1]", Interval(-1.0, 1.0), "below, in [-1e39, 1]; in [-1, 1]"),
+        ("all, in [-3.4028235e38, 3.4028235e38]", WHOLE, "all, in [-3.4028235e38, 3.4028235e38]"),
+        ("share, in [0.1, 0.7]", Interval(ROUNDED, 0.7), "share, in [0.1, 0.7]"),
+        ("share, 0.2 to 0.5, or 0.1 to 0.7", Interval(0.1, 0.7), "share, 0.2 to 0.5, or 0.1 to 0.7"),
+        ("a share, 0, 1]", Interval(0.0, 1.0), "a share, 0, 1]; in [0, 1]"),
+        ("0 to 1e5x", Interval(0.0, 1e5), "0 to 1e5x; in [0, 100000]"),
         ("a unit vector", Unit(), "a unit vector"),
         ("direction", Unit(), "direction; unit vector"),
         ("", Finite(), "finite"),
@@ -297,6 +308,30 @@ def test_prefix_that_makes_the_name_of_a_variable_is_refused(
     """A function that a local hides cannot be called."""
     with pytest.raises(UserError, match=f'prefix "a" makes "ab", which is {what}'):
         emit(library_of(tmp_path, text), dialect, prefix="a")
+
+
+SAMPLER = """def {}(map: {}, x: X) -> f32:
+    return {}
+"""
+MAP, LOOKED_UP = 'Annotated[Texture, Edges("clamp", "clamp")]', "lookup_level(map, vec2(x), 0.0).x"
+
+
+def test_prefix_that_makes_the_name_of_a_sampler_is_refused(tmp_path: Path) -> None:
+    """WGSL hands over a map as two parameters; a number is one."""
+    looked_up = library_of(tmp_path / "map", SAMPLER.format("ap_sampler", MAP, LOOKED_UP))
+    with pytest.raises(UserError, match='prefix "m" makes "map_sampler", which is a parameter of ap_sampler'):
+        emit(looked_up, dialect("wgsl"), prefix="m")
+    assert "map_sampler(" in emit(
+        library_of(tmp_path / "number", SAMPLER.format("ap_sampler", "X", "map * x")),
+        dialect("wgsl"),
+        prefix="m",
+    )
+
+
+def test_prefix_that_makes_two_names_of_variables_tells_that_of_a_function(tmp_path: Path) -> None:
+    text = "@struct\nclass S:\n    ab: X\n    aS: X\ndef b(s: S) -> f32:\n    return s.ab + s.aS\n"
+    with pytest.raises(UserError, match='prefix "a" makes "ab", which is a field of S'):
+        emit(library_of(tmp_path, text), dialect("glsl"), prefix="a")
 
 
 def hash_of(folder: Path, dialect: Dialect) -> str:
