@@ -175,16 +175,13 @@ class Resolver:
         if name not in self._structs:
             node = file.structs[name]
             names.check(name, "struct", file.place(node))
-            match node.decorator_list:
-                case [ast.Name(id="struct")]:
-                    pass
-                case _:
-                    sentence = (
-                        "a class in a shader source is a struct: decorate it with @struct, and nothing else"
-                    )
-                    raise file.error(node, sentence)
-            if node.bases or node.keywords:
-                raise file.error([*node.bases, *node.keywords][0], "a struct is made of no other class")
+            if [ast.unparse(d) for d in node.decorator_list] != ["struct"]:
+                sentence = (
+                    "a class in a shader source is a struct: decorate it with @struct, and nothing else"
+                )
+                raise file.error(node, sentence)
+            if further := [*node.bases, *node.keywords]:
+                raise file.error(further[0], "a struct is made of no other class")
             doc = self._doc(file, node)
             fields: list[Field] = []
             for item in node.body:

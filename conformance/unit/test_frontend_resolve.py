@@ -15,6 +15,7 @@ from codegen.ir.types import F32, U32
 from conformance.unit.support.sources import write_library
 
 FUNCTION = "def {}(x: X) -> f32:\n    return x\n"
+PAIR = "@struct\nclass Pair:\n    first: X\n"
 
 
 def resolver_of(folder: Path, files: dict[str, str], *extra: Path) -> Resolver:
@@ -43,10 +44,8 @@ def test_files_of_the_language_and_of_packages_are_no_sources(tmp_path: Path) ->
 
 
 def test_an_extra_folder_is_one_more_section(tmp_path: Path) -> None:
-    extra = write_library(tmp_path / "forms", {"inner.py": "def inner(x: X) -> f32:\n    return twice(x)\n"})
-    (extra / "inner.py").write_text(
-        "from shaderlib.numeric.twice import twice\n" + (extra / "inner.py").read_text()
-    )
+    text = "from shaderlib.numeric.twice import twice\ndef inner(x: X) -> f32:\n    return twice(x)\n"
+    extra = write_library(tmp_path / "forms", {"inner.py": text})
     resolver = resolver_of(tmp_path / "root", {"numeric/twice.py": ""}, extra)
     assert resolver.module_of("inner") == "shaderlib.forms.inner"
     assert resolver.path_of("inner") == extra / "inner.py"
@@ -56,16 +55,15 @@ def test_an_extra_folder_is_one_more_section(tmp_path: Path) -> None:
 
 
 def test_a_second_definition_is_refused_at_its_line(tmp_path: Path) -> None:
+    write_library(tmp_path, {"b/second.py": f"\n\n{FUNCTION.format('probe')}"}, header=False)
     with pytest.raises(SourceError) as caught:
-        write_library(tmp_path, {"b/second.py": f"\n\n{FUNCTION.format('probe')}"}, header=False)
         resolver_of(tmp_path, {"a/first.py": FUNCTION.format("probe")})
     place = caught.value.place
     assert (place.path, place.line, place.text) == ("shaderlib/b/second.py", 3, "def probe(x: X) -> f32:")
 
 
 def test_what_was_read_is_kept(tmp_path: Path) -> None:
-    struct = "@struct\nclass Pair:\n    first: X\n"
-    resolver = resolver_of(tmp_path, {"numeric/probe.py": struct + FUNCTION.format("probe")})
+    resolver = resolver_of(tmp_path, {"numeric/probe.py": PAIR + FUNCTION.format("probe")})
     file = resolver.where("probe")
     assert file is not None
     assert resolver.file("shaderlib.numeric.probe") is file
@@ -128,8 +126,7 @@ def test_constants_have_values_and_the_types_that_are_stated(tmp_path: Path) -> 
 
 @pytest.mark.parametrize("name", ["nobody", "Pair"])
 def test_a_name_of_no_function_is_told(name: str, tmp_path: Path) -> None:
-    struct = "@struct\nclass Pair:\n    first: X\n"
-    resolver = resolver_of(tmp_path, {"numeric/probe.py": struct + FUNCTION.format("probe")})
+    resolver = resolver_of(tmp_path, {"numeric/probe.py": PAIR + FUNCTION.format("probe")})
     with pytest.raises(UserError, match=f'unknown function "{name}"'):
         resolver.function(name)
     assert not resolver.defines(name)

@@ -5,7 +5,6 @@ every word of the table, beside pieces that go by their own name; bytes around t
 """
 
 import ast
-import textwrap
 from pathlib import Path
 
 import pytest
@@ -75,7 +74,7 @@ PIECES = {
 @pytest.mark.parametrize("kind", PIECES)
 def test_a_piece_of_python_is_said_in_words(kind: str) -> None:
     text, words = PIECES[kind]
-    statement = ast.parse(textwrap.dedent(f"[{text}]" if kind == "Starred" else text)).body[0]
+    statement = ast.parse(f"[{text}]" if kind == "Starred" else text).body[0]
     found = [node for node in ast.walk(statement) if type(node).__name__ == kind]
     assert describe(found[0]) == words
 
